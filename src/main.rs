@@ -1,0 +1,2 @@
+//! dripfeed
+fn main() {}
