@@ -1,1 +1,15 @@
-//! dripfeed
+//! Makes wire-EDM blocks on demand and drip-feeds them to a control over a serial link.
+
+pub mod units;
+
+pub mod geometry;
+
+pub mod shapes;
+
+pub mod interpolator;
+
+pub mod rounding;
+
+pub mod formats;
+
+pub mod part;

@@ -1,0 +1,149 @@
+//! The cutter: takes whole blocks out of the buffer, one after the other, and has them stepped.
+//!
+//! A block is stepped at the end of its cutting time; its pulses carry times spread evenly over that time. What stands
+//! in the way of a block (an alarm, a reset) strikes when it is taken.
+
+use std::time::Duration;
+
+use super::Controller;
+use crate::dialect::three_b::Block;
+use crate::interpolator;
+use crate::line::fault::FaultKind;
+use crate::observer::{BlockEnd, Observer};
+
+/// One thing in the buffer.
+pub(super) struct Queued {
+    pub(super) item: Item,
+    /// Characters it takes up there.
+    pub(super) characters: usize,
+}
+
+pub(super) enum Item {
+    Block(Block),
+    End,
+    /// What was read instead of a block, and where.
+    Malformed(String),
+}
+
+/// A block being cut.
+pub(super) struct Cut {
+    block: Block,
+    began: Duration,
+    pub(super) ends: Duration,
+}
+
+impl<O: Observer> Controller<O> {
+    /// Takes what is next out of the buffer until a block is being cut or the buffer holds none.
+    pub(super) fn take_up(&mut self) {
+        while self.cut.is_none() && self.is_running() {
+            let Some(Queued { item, characters }) = self.queue.pop_front() else {
+                break;
+            };
+            self.queued_characters -= characters;
+            match item {
+                Item::Block(block) => self.begin_cut(block, characters),
+                Item::End => self.tally.programs += 1,
+                Item::Malformed(found) => {
+                    let detail = format!("block {}, {found}", self.tally.blocks + 1);
+                    self.raise("format", Some(detail));
+                }
+            }
+            self.drained();
+        }
+        self.starved();
+    }
+
+    fn begin_cut(&mut self, block: Block, characters: usize) {
+        let number = self.tally.blocks + 1;
+        if self.settings.alarm_at_block == Some(number) || self.faults.strikes(FaultKind::Alarm) {
+            return self.raise("nak", Some(format!("block {number}: told to")));
+        }
+        if self.faults.strikes(FaultKind::NakStorm) {
+            return self.raise("nak-storm", Some(format!("block {number}: told to")));
+        }
+        let told = self.settings.reset_at_block == Some(number);
+        if told || self.faults.strikes(FaultKind::Reset) {
+            if told {
+                self.settings.reset_at_block = None;
+            }
+            return self.reset();
+        }
+        let line_time = self.settings.pace.time_of(u64::try_from(characters).unwrap_or(u64::MAX));
+        let mut takes = line_time.mul_f64(self.settings.cutting_time);
+        if self.faults.strikes(FaultKind::Slow) {
+            takes *= 10;
+        }
+        if self.faults.strikes(FaultKind::Stall) {
+            takes += self.faults.pick_milliseconds(FaultKind::Stall, 1000, 5000);
+        }
+        self.cut = Some(Cut { block, began: self.now, ends: self.now + takes });
+        if takes.is_zero() {
+            self.step_cut();
+        }
+    }
+
+    pub(super) fn finish_cut(&mut self) {
+        self.step_cut();
+        self.take_up();
+    }
+
+    /// Steps the block being cut.
+    fn step_cut(&mut self) {
+        let Some(Cut { block, began, ends }) = self.cut.take() else {
+            return;
+        };
+        let model = self.settings.interpolator;
+        let number = self.tally.blocks + 1;
+        let start_um = [self.tally.x_um, self.tally.y_um];
+        let outcome = if self.observer.wants_pulses() {
+            let span = ends - began;
+            // Times can be spread only when the number of pulses is known, so the block is stepped twice.
+            let total = if span.is_zero() { 1 } else { pulses_of(interpolator::run(model, &block, |_, _| {})) };
+            let observer = &mut self.observer;
+            let mut count = 0;
+            interpolator::run(model, &block, |dx, dy| {
+                count += 1;
+                observer.pulse(began + share(span, count, total), number, start_um[0] + dx, start_um[1] + dy);
+            })
+        } else {
+            interpolator::run(model, &block, |_, _| {})
+        };
+        let travel = match &outcome {
+            Ok(travel) => *travel,
+            Err(fault) => fault.travel,
+        };
+        self.tally.pulses += travel.pulses;
+        self.tally.x_um += travel.dx;
+        self.tally.y_um += travel.dy;
+        match outcome {
+            Ok(_) => {
+                let end_um = [self.tally.x_um, self.tally.y_um];
+                let pulses = travel.pulses;
+                self.executed(&BlockEnd { number, block, start_um, end_um, pulses, began, ended: ends }, &travel);
+            }
+            Err(fault) => {
+                let name = match fault.cause {
+                    interpolator::Cause::EndlessBlock => "endless-block",
+                    interpolator::Cause::ArcCentre => "arc-centre",
+                };
+                self.raise(name, Some(format!("block {number} ({block}): {fault}")));
+            }
+        }
+    }
+}
+
+fn pulses_of(outcome: Result<interpolator::Travel, interpolator::Fault>) -> u64 {
+    match outcome {
+        Ok(travel) => travel.pulses,
+        Err(fault) => fault.travel.pulses,
+    }
+}
+
+/// `count` of `total` equal parts of a time span.
+fn share(span: Duration, count: u64, total: u64) -> Duration {
+    if span.is_zero() {
+        return span;
+    }
+    let nanoseconds = span.as_nanos() * u128::from(count) / u128::from(total.max(1));
+    Duration::from_nanos(u64::try_from(nanoseconds).unwrap_or(u64::MAX))
+}

@@ -1,0 +1,52 @@
+//! The block for a straight line: nearly always the difference between the goal and where the control stands.
+//!
+//! The models part on lines only where X leads with nothing to do: straight along Y, and at 45° in quadrants 2 and 4.
+//! There a lattice point beside the goal serves them all.
+
+use super::{Choice, Goal, Stand};
+use crate::formats::three_b::Block;
+use crate::interpolator::Model;
+use crate::rounding::Aim;
+use crate::units::Position;
+
+/// The best line to the goal; none when no motion brings the control nearer.
+pub(super) fn choose(stand: Stand, goal: Goal) -> Option<Choice> {
+    let straight = goal.at - stand.at;
+    if straight == Position::default() {
+        return None;
+    }
+    let mut best: Option<Choice> = None;
+    for (dx, dy) in NEIGHBOURS {
+        let way = straight + Position::new(dx, dy);
+        if way == Position::default() {
+            continue;
+        }
+        let block = Block::line(way);
+        let Some(moved) = displacement(stand.aim, &block) else { continue };
+        let end = stand.at + moved;
+        let error = goal.error(end);
+        if best.is_none_or(|b| error < b.error) {
+            best = Some(Choice { block, end, error });
+        }
+        if end == goal.at {
+            break;
+        }
+    }
+    best.filter(|b| b.error < goal.error(stand.at))
+}
+
+/// Where the line ends, if every model aimed at agrees.
+fn displacement(aim: Aim, block: &Block) -> Option<Position> {
+    match aim {
+        Aim::One(model) => model.displacement(block).ok(),
+        Aim::Any => {
+            let first = Model::Rotated.displacement(block).ok()?;
+            let agree = |model: Model| model.displacement(block) == Ok(first);
+            (agree(Model::Mirrored) && agree(Model::Exact)).then_some(first)
+        }
+    }
+}
+
+/// The difference itself, then the lattice points round it.
+const NEIGHBOURS: [(i64, i64); 9] =
+    [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)];

@@ -1,0 +1,109 @@
+//! The lead-in of a gear: where the wire is threaded, and whether its way to the outline cuts into the kept part.
+//!
+//! With a positive offset the wire runs outside the outline, and the paper's lead-in from the gear's centre slits the
+//! punch; with a negative one the same lead-in lies in the slug of the cavity, where it belongs.
+
+use super::{CycloidGear, Direction, Impossible, Outline, Trim};
+use crate::geometry::{Element, Point, Sense, Vector, sweep};
+
+/// Where the wire starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LeadIn {
+    /// From the gear's centre, as in the paper.
+    #[default]
+    Centre,
+    /// No lead-in: the wire stands at the start of the outline.
+    None,
+    /// From a start hole, mm from the gear's centre.
+    From(Point),
+}
+
+impl LeadIn {
+    /// The starting point, if the lead-in is a move at all.
+    #[must_use]
+    pub fn point(self) -> Option<Point> {
+        match self {
+            Self::Centre => Some(Point::origin()),
+            Self::None => None,
+            Self::From(point) => Some(point),
+        }
+    }
+
+    /// Whether the straight way to the outline's start crosses the part that is kept: the inside of the nominal
+    /// outline for a positive offset, the outside for a negative one. With no offset no side is kept, and nothing is said.
+    ///
+    /// # Errors
+    ///
+    /// When the gear itself is impossible.
+    pub fn crosses_kept_part(self, gear: &CycloidGear, outline: &Outline, offset: f64) -> Result<bool, Impossible> {
+        let Some(from) = self.point() else { return Ok(false) };
+        if offset == 0.0 {
+            return Ok(false);
+        }
+        let nominal = gear.outline(0.0, Direction::Clockwise, Trim::Refuse)?;
+        let to = outline.start();
+        Ok(nominal.elements().any(|element| meets(from, to, &element)))
+    }
+}
+
+/// Whether the straight line from `a` to `b` meets the element.
+fn meets(a: Point, b: Point, element: &Element) -> bool {
+    match *element {
+        Element::Line { start, end } => {
+            let (d, e) = (b - a, end - start);
+            let cross = |p: Vector, q: Vector| p.x * q.y - p.y * q.x;
+            let across = cross(d, e);
+            if across == 0.0 {
+                return false;
+            }
+            let t = cross(start - a, e) / across;
+            let s = cross(start - a, d) / across;
+            (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s)
+        }
+        Element::Arc { start, end, centre, sense } => {
+            let (d, m) = (b - a, a - centre);
+            let radius = start - centre;
+            let (qa, qb, qc) = (d.dot(&d), d.dot(&m), m.dot(&m) - radius.dot(&radius));
+            let root = qb * qb - qa * qc;
+            if root < 0.0 || qa == 0.0 {
+                return false;
+            }
+            [-root.sqrt(), root.sqrt()].into_iter().any(|r| {
+                let t = (r - qb) / qa;
+                (0.0..=1.0).contains(&t) && on_arc(m + d * t, radius, end - centre, sense)
+            })
+        }
+    }
+}
+
+/// Whether a point of the circle, seen from its centre, lies on the arc.
+fn on_arc(point: Vector, start: Vector, end: Vector, sense: Sense) -> bool {
+    sweep(start, point, sense) <= sweep(start, end, sense)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crosses(offset: f64, lead_in: LeadIn) -> bool {
+        let gear = CycloidGear::default();
+        let outline = gear.outline(offset, Direction::Clockwise, Trim::Refuse).unwrap();
+        lead_in.crosses_kept_part(&gear, &outline, offset).unwrap()
+    }
+
+    #[test]
+    fn the_centre_slits_a_punch_but_not_a_cavity() {
+        assert!(crosses(0.07, LeadIn::Centre));
+        assert!(!crosses(-0.07, LeadIn::Centre));
+    }
+
+    #[test]
+    fn a_hole_outside_suits_a_punch_but_not_a_cavity() {
+        let start = CycloidGear::default().outline(0.07, Direction::Clockwise, Trim::Refuse).unwrap().start();
+        let outside = LeadIn::From(Point::from(start.coords * 1.5));
+        assert!(!crosses(0.07, outside));
+        assert!(crosses(-0.07, outside));
+        assert!(crosses(0.07, LeadIn::From(Point::new(0.0, -20.0))));
+        assert!(!crosses(0.07, LeadIn::None));
+    }
+}
