@@ -5,8 +5,8 @@
 //! differ: the model is brought down to strokes once, and the two writers only spell those strokes.
 //!
 //! ```text
-//!  Shape ─▶ Sketch ─▶ View ─▶ Picture ─▶ ink (strokes in page millimetres) ─▶ svg
-//!  (model mm, Y up)   (window, scale)                                     └▶ png
+//!  Shape ─▶ Sketch ─▶ View ─▶ Picture ──plane──▶ ink (strokes in page millimetres) ─▶ svg
+//!  (model mm, Y up)   (window, scale)                                              └▶ png
 //! ```
 //!
 //! Positions and radii are model millimetres; letters, arrow heads, markers and hairlines are page millimetres and

@@ -2,6 +2,8 @@
 
 pub mod units;
 
+pub mod place;
+
 pub mod geometry;
 
 pub mod shapes;
@@ -11,5 +13,7 @@ pub mod interpolator;
 pub mod rounding;
 
 pub mod formats;
+
+pub mod keys;
 
 pub mod part;

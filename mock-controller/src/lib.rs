@@ -26,6 +26,7 @@ pub mod dialect;
 pub mod interpolator;
 pub mod line;
 pub mod observer;
+pub mod picture;
 pub mod report;
 pub mod shell;
 

@@ -1,2 +1,99 @@
-//! stub
-fn main() {}
+//! The mock control as a program: reads its words, opens its link, serves, writes its report, says how it ended.
+//!
+//! All that the control does is in the library; all that touches the system is in the library's shell.
+
+mod cli;
+
+use std::io::{self, Write as _};
+use std::net::TcpListener;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use clap::Parser as _;
+use mock_controller::Controller;
+use mock_controller::shell::files::{Files, write_report};
+use mock_controller::shell::serial::SerialLink;
+use mock_controller::shell::tcp::TcpLink;
+use mock_controller::shell::{Link, serve};
+
+use cli::{At, Job, Words};
+
+fn main() -> ExitCode {
+    let job = match Words::parse().job() {
+        Ok(job) => job,
+        Err(error) => error.exit(),
+    };
+    match run(&job) {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Alarm(name)) => {
+            eprintln!("mock-controller: alarm: {name}");
+            ExitCode::from(6)
+        }
+        Err(error) => {
+            eprintln!("mock-controller: error: {error}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// How a run that did not fail ended.
+enum Outcome {
+    Done,
+    Alarm(String),
+}
+
+fn run(job: &Job) -> io::Result<Outcome> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
+        signal_hook::flag::register(signal, Arc::clone(&stop))?;
+    }
+    let files = Files::create(job.trace.as_deref(), job.save.as_deref(), job.picture.as_deref())?;
+    let mut control = Controller::observed(job.settings.clone(), files).map_err(io::Error::other)?;
+    let (mut link, ready) = open(job)?;
+    writeln!(io::stdout(), "ready {ready}")?;
+    io::stdout().flush()?;
+    let served = serve(link.as_mut(), &mut control, &stop, |control| {
+        if let Some(path) = &job.status {
+            write_report(path, &control.report())?;
+        }
+        control.observer_mut().flush()
+    });
+    // Whatever ended it, what was cut is told.
+    let written = job.report.as_deref().map_or(Ok(()), |path| write_report(path, &control.report()));
+    let finished = control.observer_mut().finish();
+    served.and(written).and(finished)?;
+    Ok(match control.report() {
+        report if report.alarm.is_some() => {
+            let detail = report.alarm_detail.map(|detail| format!(" ({detail})")).unwrap_or_default();
+            Outcome::Alarm(report.alarm.unwrap_or_default() + &detail)
+        }
+        _ => Outcome::Done,
+    })
+}
+
+fn open(job: &Job) -> io::Result<(Box<dyn Link>, String)> {
+    let named = |name: &str, error: io::Error| io::Error::new(error.kind(), format!("{name}: {error}"));
+    match &job.place {
+        At::Tcp(address) => {
+            let listener = TcpListener::bind(address).map_err(|error| named(address, error))?;
+            let link = TcpLink::new(listener)?;
+            let ready = link.address()?.to_string();
+            Ok((Box::new(link), ready))
+        }
+        At::Serial(device) => {
+            let link = SerialLink::new(device, job.baud, job.framing).map_err(|error| named(device, error))?;
+            Ok((Box::new(link), device.clone()))
+        }
+        #[cfg(unix)]
+        At::Pty(path) => {
+            let name = path.display().to_string();
+            let link = mock_controller::shell::pty::PtyLink::new(path).map_err(|error| named(&name, error))?;
+            Ok((Box::new(link), name))
+        }
+        #[cfg(not(unix))]
+        At::Pty(path) => {
+            Err(named(&path.display().to_string(), io::Error::from(io::ErrorKind::Unsupported)))
+        }
+    }
+}

@@ -36,7 +36,7 @@ impl ScaleBar {
     }
 }
 
-/// Powers of ten from a micrometre up that a scale bar may have; the last is a kilometre's worth.
+/// Powers of ten from a micrometre up that a scale bar may have; the longest bar is 5 km.
 const DECADES: u32 = 10;
 
 /// Writes a table of names and figures from its upper left corner, each row over a thin rule.

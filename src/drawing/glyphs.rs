@@ -3,9 +3,9 @@
 //! Drawn for this project on a grid of twentieths of the capital height, in the proportions of ISO 3098-1 lettering B:
 //! small letters 14 high, tails 6 deep, pen 2. Figures are equally wide, so columns of them stand in line.
 //!
-//! Each glyph is its width and its strokes, `|` between strokes, points as `x:y` from the foot line. A bare point is a
-//! line; `h` and `v` before it make a quarter of an ellipse that leaves horizontally or vertically; `c` gives the control
-//! point of a parabola to the point that follows. No kerning and no other scripts.
+//! Each glyph is its width and its strokes, `|` between strokes, points as `x:y` from the foot line. A bare point is
+//! a line; `h` and `v` before it make a quarter of an ellipse that leaves horizontally or vertically; `c` gives the
+//! control point of a parabola to the point that follows. No kerning and no other scripts.
 
 /// Returns the width and the strokes of a character; nothing when it is not drawn.
 pub(super) fn glyph(character: char) -> Option<(f64, &'static str)> {

@@ -1,7 +1,7 @@
 //! Lines of text as strokes.
 //!
-//! Reads the [`glyphs`](super::glyphs) and sets them side by side. One line at a time, left to right; it breaks no lines
-//! and knows no other direction.
+//! Reads the [`glyphs`](super::glyphs) and sets them side by side. One line at a time, left to right; it breaks no
+//! lines and knows no other direction.
 
 use super::glyphs::{MISSING, glyph};
 use super::ink::Step;

@@ -118,7 +118,8 @@ impl Sleeve {
 
     /// Says whether a line may end at `way`: in an admitted direction and no nearer than any point before it.
     ///
-    /// The distance matters when the trace turns back: a line that ended short of its farthest point would not cover it.
+    /// The distance matters when the trace turns back: a line that ended short of its farthest point would not cover
+    /// that one.
     fn admits(&self, way: [f64; 2]) -> bool {
         square(way) >= self.reach && self.wedge.holds(way)
     }

@@ -90,7 +90,6 @@ pub struct Outline {
     /// The nodes in order of cut and, between each two, the arc's centre and sense if it is one.
     nodes: Vec<Point>,
     bends: Vec<Option<(Point, Sense)>>,
-    /// Half a tooth pitch: the angle of the starting point from the tooth's axis.
     sharp_tip: bool,
     trimmed_root: bool,
 }
@@ -289,8 +288,8 @@ mod tests {
     #[test]
     fn a_wire_too_thick_for_the_space_is_trimmed_only_when_asked() {
         let gear = CycloidGear::default();
-        assert!(gear.outline(0.4, Direction::Clockwise, Trim::Refuse).is_err());
-        let outline = gear.outline(0.4, Direction::Clockwise, Trim::Allow).unwrap();
+        assert!(gear.outline(0.3, Direction::Clockwise, Trim::Refuse).is_err());
+        let outline = gear.outline(0.3, Direction::Clockwise, Trim::Allow).unwrap();
         assert!(outline.has_trimmed_root());
         assert_eq!(outline.elements_per_tooth(), 5);
     }

@@ -64,9 +64,9 @@ impl<O: Observer> Controller<O> {
             return;
         }
         self.flow.go_at = None;
-        // ISO: bit 8 is parity; NUL and CR are ignored (domain/4, "Character codes").
+        // ISO: bit 8 is parity; NUL is ignored, CR too, by the reader (domain/4, "Character codes").
         let c = byte & 0x7F;
-        if c == 0x00 || c == b'\r' {
+        if c == 0x00 {
             return;
         }
         let read = self.reader.push(c, &mut self.text, &mut self.observer);

@@ -150,14 +150,28 @@ impl Reader {
         self.state = if self.label_skip == LabelSkip::Off { State::Between } else { State::Label };
     }
 
-    /// Takes one character; bit 8 is already clear, NUL and CR already gone.
+    /// Takes one character; bit 8 is already clear, NUL already gone.
     pub(crate) fn push(&mut self, c: u8, text: &mut Text, observer: &mut impl Observer) -> Read {
+        if c == b'\r' {
+            return self.carriage_return(text, observer);
+        }
         if c == b'\n' {
             self.place = Place { line: self.place.line + 1, column: 0 };
         } else {
             self.place.column += 1;
         }
         self.characters += 1;
+        self.take(c, text, observer)
+    }
+
+    /// CR is ignored; but where it stands alone as the end of block ("in use: LF, CR LF, CR, LF CR …", domain/4), it ends
+    /// a label, a comment and a `%` line as LF would. The text takes several line ends in a row as one.
+    fn carriage_return(&mut self, text: &mut Text, observer: &mut impl Observer) -> Read {
+        let in_block = matches!(self.state, State::Block { .. } | State::Dead) || self.assembly.is_partial();
+        if in_block { Read::Nothing } else { self.take(b'\n', text, observer) }
+    }
+
+    fn take(&mut self, c: u8, text: &mut Text, observer: &mut impl Observer) -> Read {
         match self.state {
             State::Label => self.label(c, text, observer),
             State::Between => self.between(c, text, observer),
@@ -248,12 +262,13 @@ impl Reader {
             self.state = State::Between;
             return if pauses { Read::Nothing } else { self.end(text) };
         }
-        if self.assembly.is_partial() {
+        if self.assembly.is_begun() {
             // A block may run over a line end: white space is free.
             self.pending.push(b'\n');
             self.state = State::Block { kept: false };
             return Read::Nothing;
         }
+        self.assembly = Assembly::default();
         self.skip_pending();
         self.state = State::Between;
         Read::Nothing

@@ -212,6 +212,11 @@ impl Assembly {
         self.place != Place::Start
     }
 
+    /// As [`Assembly::is_partial`], a block number in front alone not counted.
+    pub(crate) fn is_begun(&self) -> bool {
+        self.is_partial() && self.place != Place::Numbered
+    }
+
     /// Takes one character, bit 8 already cleared. After `Complete` or `Wrong` it stands at the start again.
     pub(crate) fn push(&mut self, byte: u8) -> Step {
         let c = byte.to_ascii_uppercase();

@@ -1,0 +1,81 @@
+//! A place in a text someone wrote: line, column, byte, and enough of the line to put a caret under it.
+
+use std::fmt;
+
+/// Where in a source something stands.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: u64,
+    /// Column, from 1, in bytes.
+    pub column: u64,
+    /// Offset from the start of the source, in bytes.
+    pub byte: u64,
+    /// The line, or the part of a long line round the place; bytes that are not printable ASCII are shown as a full stop.
+    pub excerpt: String,
+    /// Where in `excerpt` the caret goes, in bytes.
+    pub caret: usize,
+    /// How many bytes of `excerpt` are meant; at least 1 unless at the end of the line.
+    pub width: usize,
+}
+
+impl Place {
+    /// The place of the bytes `start..end` of a text held in memory.
+    #[must_use]
+    pub fn in_text(text: &str, start: usize, end: usize) -> Self {
+        let start = start.min(text.len());
+        let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |at| start + at);
+        let line = 1 + text[..line_start].bytes().filter(|&b| b == b'\n').count() as u64;
+        Self::in_line(text[line_start..line_end].as_bytes(), line, line_start as u64, start - line_start, end.saturating_sub(start))
+    }
+
+    /// The place of `width` bytes at `at` in a line that begins at byte `line_byte` of its source.
+    #[must_use]
+    pub fn in_line(line: &[u8], number: u64, line_byte: u64, at: usize, width: usize) -> Self {
+        let from = at.saturating_sub(EXCERPT_BEFORE);
+        let to = line.len().min(at + EXCERPT_AFTER);
+        let shown = |bytes: &[u8]| -> String {
+            bytes.iter().map(|&b| if (b' '..=b'~').contains(&b) { b as char } else { '.' }).collect()
+        };
+        Self {
+            line: number,
+            column: at as u64 + 1,
+            byte: line_byte + at as u64,
+            excerpt: shown(line.get(from..to).unwrap_or_default()),
+            caret: at - from,
+            width: width.min(to.saturating_sub(at)),
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}, column {}", self.line, self.column)
+    }
+}
+
+/// Bytes of a long line shown before the place.
+const EXCERPT_BEFORE: usize = 60;
+/// Bytes of a long line shown from the place on.
+const EXCERPT_AFTER: usize = 40;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_counts_lines_columns_and_bytes() {
+        let place = Place::in_text("one\ntwo three\n", 8, 13);
+        assert_eq!((place.line, place.column, place.byte), (2, 5, 8));
+        assert_eq!((place.excerpt.as_str(), place.caret, place.width), ("two three", 4, 5));
+    }
+
+    #[test]
+    fn a_long_line_is_shown_in_part() {
+        let line = "x".repeat(5000);
+        let place = Place::in_line(line.as_bytes(), 1, 0, 3000, 1);
+        assert_eq!(place.column, 3001);
+        assert!(place.excerpt.len() <= 100);
+    }
+}
