@@ -14,6 +14,14 @@ pub mod rounding;
 
 pub mod formats;
 
+pub mod tape;
+
+pub mod protocol;
+
+pub mod profile;
+
+pub mod drawing;
+
 pub mod keys;
 
 pub mod part;

@@ -277,7 +277,7 @@ mod tests {
         assert!(matches!(with(|g| g.ks = 3.2), Impossible::NoSpace { .. }));
         assert!(matches!(with(|g| g.ks = 5.0), Impossible::ToothTooThick { .. }));
         assert!(matches!(with(|g| g.tip_radius = 0.9), Impossible::TipRadius { .. }));
-        assert!(matches!(with(|g| g.tip_radius = 0.3), Impossible::TipTooNarrow { .. }));
+        assert!(matches!(with(|g| g.tip_radius = 0.35), Impossible::TipTooNarrow { .. }));
         assert!(matches!(with(|g| g.kp = 18.0), Impossible::FlankRadius { .. }));
         assert!(matches!(with(|g| g.kp = 0.1), Impossible::PitchCircle { .. }));
         assert!(matches!(with(|g| g.knf = 0.85), Impossible::FlankVanishes { .. }));

@@ -1,0 +1,244 @@
+//! How many bytes may be handed to the driver now.
+//!
+//! Bytes already in a driver cannot be recalled when the control says stop, so the sender keeps few of them there. How
+//! many are still unsent is known from the time a character takes on the wire. The arithmetic of the ten-character
+//! rule lives here: characters completed while the control's DC3 is on its way, plus those still in the driver when it
+//! is seen.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// What bounds the bytes in flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace {
+    /// How long a character takes on the wire, start and stop bits included; none when the line is not paced.
+    pub character: Option<Duration>,
+    /// Most bytes in the driver, not yet on the wire.
+    pub window: usize,
+    /// Whether to leave listening gaps, so that the limit holds whatever the latency.
+    pub gaps: Option<Gaps>,
+    /// How long what the control sends takes to be seen here.
+    pub latency: Duration,
+}
+
+/// Listening gaps: never more than `burst` characters within any `span`.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Gaps {
+    /// Most characters in a span.
+    pub burst: usize,
+    /// The time in which a DC3 is sure to be seen and the driver to have run empty.
+    pub span: Duration,
+}
+
+/// The most bytes an unpaced link is given ahead of what it took.
+pub const UNPACED_WINDOW: usize = 65_536;
+/// The most bytes a paced driver is given ahead, whatever the limit: what a 16550's FIFO holds.
+pub const WINDOW_MAX: usize = 16;
+
+impl Pace {
+    /// No pacing: the link takes what it can.
+    #[must_use]
+    pub fn unpaced() -> Self {
+        Self { character: None, window: UNPACED_WINDOW, gaps: None, latency: Duration::ZERO }
+    }
+
+    /// Free running: a window as large as the overrun limit leaves beside the latency, at least 1.
+    #[must_use]
+    pub fn free(character: Duration, latency: Duration, limit: usize) -> Self {
+        let lost = characters_within(latency, character);
+        let window = limit.saturating_sub(lost).clamp(1, WINDOW_MAX);
+        Self { character: Some(character), window, gaps: None, latency }
+    }
+
+    /// With listening gaps where the latency makes free running break the limit.
+    #[must_use]
+    pub fn strict(character: Duration, latency: Duration, limit: usize) -> Self {
+        let free = Self::free(character, latency, limit);
+        if free.worst_overrun() <= limit {
+            return free;
+        }
+        let window = STRICT_WINDOW.min(limit).max(1);
+        let span = latency + character * (window as u32) + STRICT_MARGIN;
+        Self { window, gaps: Some(Gaps { burst: limit.max(1), span }), ..free }
+    }
+
+    /// The most characters that can be completed after the control's DC3 has left it.
+    #[must_use]
+    pub fn worst_overrun(&self) -> usize {
+        match (self.character, self.gaps) {
+            (None, _) => self.window,
+            (Some(_), Some(gaps)) => gaps.burst,
+            (Some(character), None) => characters_within(self.latency, character) + self.window,
+        }
+    }
+
+    /// The share of the line's time that gaps leave for sending, 0 to 1.
+    #[must_use]
+    pub fn best_utilisation(&self) -> f64 {
+        match (self.character, self.gaps) {
+            (Some(character), Some(gaps)) => {
+                (character.as_secs_f64() * gaps.burst as f64 / gaps.span.as_secs_f64()).min(1.0)
+            }
+            _ => 1.0,
+        }
+    }
+}
+
+/// Characters that can be completed within a time, at the worst phase.
+fn characters_within(time: Duration, character: Duration) -> usize {
+    time.as_nanos().div_ceil(character.as_nanos().max(1)) as usize
+}
+
+/// In strict pacing the driver holds no more than this: enough to keep the line busy within a burst.
+const STRICT_WINDOW: usize = 2;
+/// Added to the span for the sender's own delay in noticing. A guess; a slower machine shows in `max_overrun_bytes`.
+const STRICT_MARGIN: Duration = Duration::from_millis(1);
+
+/// Follows what is on the wire by the time it takes.
+#[derive(Clone, Debug)]
+pub struct Pacer {
+    pace: Pace,
+    /// When the last byte handed over will have left the wire.
+    free_at: Duration,
+    /// When each of the last `burst` characters is completed, first first; kept only with gaps.
+    completed: VecDeque<Duration>,
+}
+
+impl Pacer {
+    /// A pacer for an idle line.
+    #[must_use]
+    pub fn new(pace: Pace) -> Self {
+        Self { pace, free_at: Duration::ZERO, completed: VecDeque::new() }
+    }
+
+    /// The bounds it keeps.
+    #[must_use]
+    pub fn pace(&self) -> &Pace {
+        &self.pace
+    }
+
+    /// When the line will be empty.
+    #[must_use]
+    pub fn free_at(&self) -> Duration {
+        self.free_at
+    }
+
+    /// Bytes handed over that are not completed on the wire.
+    #[must_use]
+    pub fn unsent(&self, now: Duration) -> usize {
+        let Some(character) = self.pace.character else { return 0 };
+        characters_within(self.free_at.saturating_sub(now), character)
+    }
+
+    /// How many bytes may be handed over now.
+    #[must_use]
+    pub fn room(&self, now: Duration) -> usize {
+        let window = self.pace.window.saturating_sub(self.unsent(now));
+        let (Some(gaps), Some(character)) = (self.pace.gaps, self.pace.character) else { return window };
+        let start = self.free_at.max(now);
+        (0..window)
+            .take_while(|&ahead| {
+                let done = start + character * (ahead as u32 + 1);
+                let earlier = (self.completed.len() + ahead).checked_sub(gaps.burst);
+                earlier.and_then(|n| self.completed.get(n)).is_none_or(|&before| done >= before + gaps.span)
+            })
+            .count()
+    }
+
+    /// Records that `count` bytes were handed over.
+    pub fn handed(&mut self, count: usize, now: Duration) {
+        let Some(character) = self.pace.character else { return };
+        let start = self.free_at.max(now);
+        self.free_at = start + character * (count as u32);
+        if let Some(gaps) = self.pace.gaps {
+            for n in 1..=count as u32 {
+                self.completed.push_back(start + character * n);
+            }
+            while self.completed.len() > gaps.burst {
+                self.completed.pop_front();
+            }
+        }
+    }
+
+    /// When there will be room worth waking up for; none without pacing.
+    #[must_use]
+    pub fn room_at(&self, now: Duration) -> Option<Duration> {
+        let character = self.pace.character?;
+        // Refill when half the window has left, so that the line never runs dry between two wake-ups.
+        let keep = self.pace.window / 2;
+        let by_window = self.free_at.saturating_sub(character * (keep as u32));
+        let by_gap = self.pace.gaps.and_then(|gaps| {
+            let earlier = self.completed.len().checked_sub(gaps.burst)?;
+            // The next character takes its own time, so it may start that much before it may be completed.
+            Some((*self.completed.get(earlier)? + gaps.span).saturating_sub(character))
+        });
+        Some(by_window.max(by_gap.unwrap_or_default()).max(now))
+    }
+
+    /// Characters completed, or bound to be, after an instant: the overrun if the control said stop then.
+    #[must_use]
+    pub fn completed_after(&self, then: Duration, handed_since: usize) -> usize {
+        match self.pace.character {
+            None => handed_since,
+            Some(character) => characters_within(self.free_at.saturating_sub(then), character).min(handed_since),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn character(baud: u32) -> Duration {
+        Duration::from_nanos(11_000_000_000 / u64::from(baud))
+    }
+
+    #[test]
+    fn the_window_leaves_room_for_the_latency() {
+        let pace = Pace::free(character(4800), 16 * MS, 10);
+        assert_eq!((pace.window, pace.worst_overrun()), (3, 10));
+        let pace = Pace::free(character(9600), 4 * MS, 10);
+        assert_eq!((pace.window, pace.worst_overrun()), (6, 10));
+        let pace = Pace::free(character(9600), 16 * MS, 10);
+        assert_eq!((pace.window, pace.worst_overrun()), (1, 15));
+    }
+
+    #[test]
+    fn strict_pacing_gaps_only_where_it_must() {
+        assert_eq!(Pace::strict(character(4800), 16 * MS, 10).gaps, None);
+        let pace = Pace::strict(character(9600), 16 * MS, 10);
+        assert_eq!(pace.worst_overrun(), 10);
+        assert!(pace.best_utilisation() > 0.55, "{}", pace.best_utilisation());
+    }
+
+    #[test]
+    fn no_span_ever_holds_more_than_a_burst() {
+        let pace = Pace::strict(character(9600), 16 * MS, 10);
+        let (mut pacer, mut now, mut done) = (Pacer::new(pace), Duration::ZERO, Vec::new());
+        while done.len() < 2000 {
+            let room = pacer.room(now);
+            if room > 0 {
+                let start = pacer.free_at().max(now);
+                pacer.handed(room, now);
+                done.extend((1..=room as u32).map(|n| start + character(9600) * n));
+            }
+            let wake = pacer.room_at(now).unwrap();
+            now = wake.max(now + Duration::from_micros(50));
+        }
+        for window in done.windows(11) {
+            assert!(window[10] - window[0] >= pace.gaps.unwrap().span);
+        }
+        let busy = character(9600) * done.len() as u32;
+        assert!(busy.as_secs_f64() / done.last().unwrap().as_secs_f64() > 0.55);
+    }
+
+    #[test]
+    fn an_unpaced_line_has_room_at_once() {
+        let mut pacer = Pacer::new(Pace::unpaced());
+        pacer.handed(1_000_000, Duration::ZERO);
+        assert_eq!(pacer.room(Duration::ZERO), UNPACED_WINDOW);
+        assert_eq!(pacer.room_at(Duration::ZERO), None);
+    }
+}
