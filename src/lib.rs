@@ -14,6 +14,10 @@ pub mod rounding;
 
 pub mod formats;
 
+pub mod program;
+
+pub mod journal;
+
 pub mod tape;
 
 pub mod protocol;

@@ -5,6 +5,8 @@
 
 pub mod file;
 
+use std::sync::Arc;
+
 use crate::formats::three_b::Style;
 use crate::geometry::{Element, Point};
 use crate::interpolator::Model;
@@ -101,7 +103,7 @@ impl Default for Part {
 #[derive(Clone, Debug)]
 pub struct Prepared {
     part: Part,
-    outline: Outline,
+    outline: Arc<Outline>,
     warnings: Vec<Warning>,
 }
 
@@ -176,7 +178,7 @@ impl Prepared {
 
     /// The wire's path once round.
     #[must_use]
-    pub fn outline(&self) -> &Outline {
+    pub fn outline(&self) -> &Arc<Outline> {
         &self.outline
     }
 
@@ -199,15 +201,16 @@ impl Prepared {
     }
 
     /// The elements of the whole program, one at a time.
-    pub fn steps(&self) -> impl Iterator<Item = Step> + Send + '_ {
-        let start = self.outline.start();
+    pub fn steps(&self) -> impl Iterator<Item = Step> + Send + use<> {
+        let outline = Arc::clone(&self.outline);
+        let start = outline.start();
         let lead_in = self.part.lead_in.point().map(|from| Step {
             element: Element::Line { start: from, end: start },
             role: Role::LeadIn,
         });
-        let last = self.outline.len() - 1;
-        let once = move || {
-            (0..).zip(self.outline.elements()).map(move |(n, element)| Step {
+        let last = outline.len() - 1;
+        let once = move |_| {
+            (0..).zip(outline.elements()).map(move |(n, element)| Step {
                 element,
                 role: match n {
                     0 => Role::Opening,
@@ -216,12 +219,12 @@ impl Prepared {
                 },
             })
         };
-        lead_in.into_iter().chain((0..self.part.repeat).flat_map(move |_| once()))
+        lead_in.into_iter().chain((0..self.part.repeat).flat_map(once))
     }
 
     /// The blocks of the whole program, one at a time.
     #[must_use]
-    pub fn blocks(&self) -> Box<dyn Iterator<Item = Made> + Send + '_> {
+    pub fn blocks(&self) -> Box<dyn Iterator<Item = Made> + Send> {
         match self.part.rounding {
             Rounding::PerBlock => Box::new(PerBlock::new(self.steps())),
             Rounding::ClosedLoop => Box::new(ClosedLoop::new(self.steps(), self.origin(), self.part.aim)),

@@ -12,6 +12,8 @@
 mod bounds;
 mod lead_in;
 
+use std::sync::Arc;
+
 use crate::geometry::{Element, Point, Rotation, Sense};
 
 pub use bounds::Impossible;
@@ -100,7 +102,7 @@ impl CycloidGear {
     /// # Errors
     ///
     /// When no such tooth exists, or the wire does not fit.
-    pub fn outline(&self, offset: f64, direction: Direction, trim: Trim) -> Result<Outline, Impossible> {
+    pub fn outline(&self, offset: f64, direction: Direction, trim: Trim) -> Result<Arc<Outline>, Impossible> {
         let Derived { r_c, r_f, rho, beta, theta, phi, rho_f } = self.derived()?;
         bounds::offset(self, offset, trim)?;
 
@@ -150,7 +152,7 @@ impl CycloidGear {
             bends.push(Some((rounding_centre, Sense::Clockwise)));
         }
 
-        Ok(Outline::from_left_half(self.teeth, left, bends, sharp_tip, trimmed_root, direction))
+        Ok(Arc::new(Outline::from_left_half(self.teeth, left, bends, sharp_tip, trimmed_root, direction)))
     }
 }
 
@@ -218,27 +220,27 @@ impl Outline {
 
     /// The outline once round, tooth by tooth.
     #[must_use]
-    pub fn elements(&self) -> Elements<'_> {
+    pub fn elements(self: &Arc<Self>) -> Elements {
         let rotation = Rotation::clockwise_step(0, self.teeth);
-        Elements { outline: self, tooth: 0, index: 0, rotation, from: self.start() }
+        Elements { outline: Arc::clone(self), tooth: 0, index: 0, rotation, from: self.start() }
     }
 }
 
 /// The elements of an [`Outline`], made one at a time.
 #[derive(Clone, Debug)]
-pub struct Elements<'a> {
-    outline: &'a Outline,
+pub struct Elements {
+    outline: Arc<Outline>,
     tooth: u64,
     index: usize,
     rotation: Rotation,
     from: Point,
 }
 
-impl Iterator for Elements<'_> {
+impl Iterator for Elements {
     type Item = Element;
 
     fn next(&mut self) -> Option<Element> {
-        let outline = self.outline;
+        let outline = &*self.outline;
         if self.tooth == outline.teeth {
             return None;
         }

@@ -1,0 +1,204 @@
+//! A program as the sender sees it: lines of text pulled one at a time, whatever they are made from.
+//!
+//! A part is generated, a 3B file is read; neither is ever held. A program is pulled once; to send it again it is made
+//! again, and [`Segments`] tells whether it is still the same.
+
+use std::io::BufRead;
+
+use thiserror::Error;
+
+use crate::formats::three_b::read::{Item, ReadError, Reader};
+use crate::formats::three_b::{Block, Style};
+use crate::part::Prepared;
+use crate::rounding::Made;
+
+/// A line of program text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Line {
+    /// A block.
+    Block(Block),
+    /// A stop word; not counted as a block.
+    StopWord,
+}
+
+/// Why a program cannot go on.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ProgramError {
+    /// The source is not a program.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The source is no longer what was checked.
+    #[error("the source changed while it was being sent")]
+    Changed,
+}
+
+/// Something lines can be pulled from.
+pub trait Program: Send {
+    /// Appends the next line's text, without an end of block; none at the end.
+    ///
+    /// # Errors
+    ///
+    /// When the source fails; what was pulled before stands.
+    fn pull(&mut self, text: &mut Vec<u8>) -> Result<Option<Line>, ProgramError>;
+}
+
+/// A part, generated.
+pub struct Generated {
+    blocks: Box<dyn Iterator<Item = Made> + Send>,
+    style: Style,
+    stop_word: &'static str,
+}
+
+impl Generated {
+    /// The program of a part.
+    #[must_use]
+    pub fn new(prepared: &Prepared) -> Self {
+        let part = prepared.part();
+        Self { blocks: prepared.blocks(), style: part.style, stop_word: part.stop_word.text() }
+    }
+}
+
+impl Program for Generated {
+    fn pull(&mut self, text: &mut Vec<u8>) -> Result<Option<Line>, ProgramError> {
+        if let Some(made) = self.blocks.next() {
+            self.style.write(&made.block, text);
+            return Ok(Some(Line::Block(made.block)));
+        }
+        if self.stop_word.is_empty() {
+            return Ok(None);
+        }
+        text.extend_from_slice(std::mem::take(&mut self.stop_word).as_bytes());
+        Ok(Some(Line::StopWord))
+    }
+}
+
+/// A 3B program, read.
+pub struct Read<R> {
+    reader: Reader<R>,
+}
+
+impl<R: BufRead + Send> Read<R> {
+    /// The program in a source.
+    pub fn new(source: R) -> Self {
+        Self { reader: Reader::new(source) }
+    }
+}
+
+impl<R: BufRead + Send> Program for Read<R> {
+    fn pull(&mut self, text: &mut Vec<u8>) -> Result<Option<Line>, ProgramError> {
+        Ok(match self.reader.next_item()? {
+            Some(Item::Block(block)) => {
+                text.extend_from_slice(self.reader.text());
+                Some(Line::Block(block))
+            }
+            Some(Item::StopWord(word)) => {
+                text.extend_from_slice(word.as_bytes());
+                Some(Line::StopWord)
+            }
+            None => None,
+        })
+    }
+}
+
+/// The chained digest of a program's text, one LF a line, cut into segments.
+///
+/// A segment's value is H(previous value ‖ text of the segment), so one value vouches for all that came before it. The
+/// segments are short at first and grow with the block number, so that a small job is known finely and a long one keeps
+/// few values: a segment ends at n when n is a multiple of max(16, the largest power of two ≤ n / 16).
+#[derive(Clone, Debug)]
+pub struct Segments {
+    hasher: blake3::Hasher,
+    blocks: u64,
+}
+
+impl Default for Segments {
+    fn default() -> Self {
+        Self { hasher: blake3::Hasher::new(), blocks: 0 }
+    }
+}
+
+/// A segment's end and the value there.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Segment {
+    /// The last block of the segment.
+    pub block: u64,
+    /// The chained value.
+    pub value: blake3::Hash,
+}
+
+impl Segments {
+    /// Adds a line; returns the segment it ends, if it does.
+    pub fn add(&mut self, text: &[u8], line: Line) -> Option<Segment> {
+        self.hasher.update(text);
+        self.hasher.update(b"\n");
+        match line {
+            Line::StopWord => None,
+            Line::Block(_) => {
+                self.blocks += 1;
+                ends_segment(self.blocks).then(|| self.cut())
+            }
+        }
+    }
+
+    /// The value of all there is, at the program's end.
+    pub fn finish(&mut self) -> Segment {
+        self.cut()
+    }
+
+    fn cut(&mut self) -> Segment {
+        let value = self.hasher.finalize();
+        self.hasher.reset();
+        self.hasher.update(value.as_bytes());
+        Segment { block: self.blocks, value }
+    }
+}
+
+/// Whether a segment ends at a block.
+fn ends_segment(block: u64) -> bool {
+    let unit = (1u64 << block.max(1).ilog2()) / 16;
+    block.is_multiple_of(unit.max(16))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::part::Part;
+
+    fn lines(mut program: impl Program) -> Vec<String> {
+        let mut lines = Vec::new();
+        let mut text = Vec::new();
+        while program.pull(&mut text).unwrap().is_some() {
+            lines.push(String::from_utf8(std::mem::take(&mut text)).unwrap());
+        }
+        lines
+    }
+
+    #[test]
+    fn what_is_generated_reads_back_as_itself() {
+        let prepared = Part::default().prepare().unwrap();
+        let generated = lines(Generated::new(&prepared));
+        assert_eq!(generated.last().unwrap(), "DD");
+        let text = generated.join("\n");
+        assert_eq!(lines(Read::new(text.as_bytes())), generated);
+    }
+
+    #[test]
+    fn segments_grow_with_the_program() {
+        let ends: Vec<u64> = (1..2000).filter(|&n| ends_segment(n)).collect();
+        assert_eq!(ends[..4], [16, 32, 48, 64]);
+        assert!(ends.contains(&512) && ends.contains(&1024) && ends.len() < 70);
+    }
+
+    #[test]
+    fn one_changed_character_changes_every_value_after_it() {
+        let block = Line::Block(Block::line(crate::units::Position::new(1, 2)));
+        let values = |changed: usize| -> Vec<Segment> {
+            let mut segments = Segments::default();
+            (1..=64).filter_map(|n| segments.add(if n == changed { b"C" } else { b"B" }, block)).collect()
+        };
+        let (a, b) = (values(0), values(20));
+        assert_eq!(a[0], b[0]);
+        assert!(a[1..].iter().zip(&b[1..]).all(|(a, b)| a != b));
+    }
+}
