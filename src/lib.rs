@@ -24,8 +24,12 @@ pub mod protocol;
 
 pub mod profile;
 
+pub mod link;
+
 pub mod drawing;
 
 pub mod keys;
 
 pub mod part;
+
+pub mod cli;

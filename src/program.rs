@@ -28,9 +28,6 @@ pub enum ProgramError {
     /// The source is not a program.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The source is no longer what was checked.
-    #[error("the source changed while it was being sent")]
-    Changed,
 }
 
 /// Something lines can be pulled from.

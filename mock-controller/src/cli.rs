@@ -275,7 +275,11 @@ fn fault(word: &str) -> Result<(FaultKind, f64), String> {
     let (kind, rate) = word.split_once('=').ok_or("expected KIND=RATE")?;
     let kind = kind.parse::<FaultKind>().map_err(|error| error.to_string())?;
     let rate = rate.parse::<f64>().map_err(|_| "the rate is no number")?;
-    if (0.0..=1.0).contains(&rate) { Ok((kind, rate)) } else { Err("the rate is not between 0 and 1".to_owned()) }
+    if (0.0..=1.0).contains(&rate) {
+        Ok((kind, rate))
+    } else {
+        Err("the rate is not between 0 and 1".to_owned())
+    }
 }
 
 fn start(word: &str) -> Result<Start, String> {
@@ -291,5 +295,9 @@ fn start(word: &str) -> Result<Start, String> {
 
 fn milliseconds(word: &str) -> Result<f64, String> {
     let latency = word.parse::<f64>().map_err(|_| "expected milliseconds")?;
-    if (0.0..=60_000.0).contains(&latency) { Ok(latency) } else { Err("not between 0 and 60000 ms".to_owned()) }
+    if (0.0..=60_000.0).contains(&latency) {
+        Ok(latency)
+    } else {
+        Err("not between 0 and 60000 ms".to_owned())
+    }
 }

@@ -274,18 +274,23 @@ impl<O: Observer> Controller<O> {
     }
 
     fn next_event(&self) -> Option<(Duration, Event)> {
-        // At one instant: characters first, so that one that completes together with DC3's stop bit is no overrun.
-        [
-            (self.character_due(), Event::Character),
-            (self.cut.as_ref().map(|cut| cut.ends), Event::CutEnds),
-            (self.back.completion(), Event::Sent),
-            (self.flow.go_at, Event::Go),
-            (self.end_of_transfer_due(), Event::EndOfTransfer),
-            (self.forward.mark_is_due().then_some(self.now), Event::Mark),
-        ]
-        .into_iter()
-        .filter_map(|(at, event)| at.map(|at| (at, event)))
-        .min_by_key(|&(at, _)| at)
+        // At one instant the earlier of these goes first: characters before what is sent, so that one that completes
+        // together with DC3's stop bit is no overrun.
+        let mut next = None;
+        let mut consider = |at: Option<Duration>, event| {
+            if let Some(at) = at
+                && next.is_none_or(|(earliest, _)| at < earliest)
+            {
+                next = Some((at, event));
+            }
+        };
+        consider(self.character_due(), Event::Character);
+        consider(self.cut.as_ref().map(|cut| cut.ends), Event::CutEnds);
+        consider(self.back.completion(), Event::Sent);
+        consider(self.flow.go_at, Event::Go);
+        consider(self.end_of_transfer_due(), Event::EndOfTransfer);
+        consider(self.forward.mark_is_due().then_some(self.now), Event::Mark);
+        next
     }
 
     fn handle(&mut self, event: Event) {

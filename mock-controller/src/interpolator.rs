@@ -87,7 +87,9 @@ pub fn run(model: Model, block: &Block, pulse: impl FnMut(i64, i64)) -> Result<T
     match (model, block.kind) {
         (Model::Rotated | Model::Strict, Kind::Line) => stepping::line_rotated(block, cap, pulse),
         (Model::Mirrored, Kind::Line) => stepping::line_mirrored(block, cap, pulse),
-        (Model::Rotated | Model::Mirrored, Kind::Clockwise) => stepping::clockwise::<false>(block, cap, pulse),
+        (Model::Rotated | Model::Mirrored, Kind::Clockwise) => {
+            stepping::clockwise::<false>(block, cap, pulse)
+        }
         (Model::Rotated | Model::Mirrored, Kind::CounterClockwise) => {
             stepping::counter_clockwise::<false>(block, cap, pulse)
         }

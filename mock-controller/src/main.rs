@@ -82,18 +82,18 @@ fn open(job: &Job) -> io::Result<(Box<dyn Link>, String)> {
             Ok((Box::new(link), ready))
         }
         At::Serial(device) => {
-            let link = SerialLink::new(device, job.baud, job.framing).map_err(|error| named(device, error))?;
+            let link =
+                SerialLink::new(device, job.baud, job.framing).map_err(|error| named(device, error))?;
             Ok((Box::new(link), device.clone()))
         }
         #[cfg(unix)]
         At::Pty(path) => {
             let name = path.display().to_string();
-            let link = mock_controller::shell::pty::PtyLink::new(path).map_err(|error| named(&name, error))?;
+            let link =
+                mock_controller::shell::pty::PtyLink::new(path).map_err(|error| named(&name, error))?;
             Ok((Box::new(link), name))
         }
         #[cfg(not(unix))]
-        At::Pty(path) => {
-            Err(named(&path.display().to_string(), io::Error::from(io::ErrorKind::Unsupported)))
-        }
+        At::Pty(path) => Err(named(&path.display().to_string(), io::Error::from(io::ErrorKind::Unsupported))),
     }
 }

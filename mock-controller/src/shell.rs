@@ -1,7 +1,7 @@
 //! The shell: the only place with a clock, a pseudo-terminal, a socket, a serial device and files.
 //!
 //! One loop, [`serve`], drives a [`Controller`] from any [`Link`]. It never waits longer than the control's next event
-//! or [`GLANCE`], and never spins: a link that has hung up is looked at every few milliseconds.
+//! or `GLANCE`, and never spins: a link that has hung up is looked at every few milliseconds.
 
 pub mod files;
 #[cfg(unix)]
@@ -89,7 +89,9 @@ pub fn serve<O: Observer>(
             next_tick = now + TICK;
             tick(control)?;
         }
-        if control.is_finished() && (control.alarm().is_some() || control.settings().until == Until::ProgramEnd) {
+        if control.is_finished()
+            && (control.alarm().is_some() || control.settings().until == Until::ProgramEnd)
+        {
             let since = *finished_at.get_or_insert(now);
             if !is_open || now >= since + LINGER {
                 break;
@@ -108,7 +110,10 @@ pub fn serve<O: Observer>(
             }
             News::Bytes(bytes) => {
                 let accepted = control.send(&bytes, clock.now());
-                debug_assert!(accepted == bytes.len() || !is_open, "a link reads no more than there is room for");
+                debug_assert!(
+                    accepted == bytes.len() || !is_open,
+                    "a link reads no more than there is room for"
+                );
             }
             News::Closed => {
                 is_open = false;

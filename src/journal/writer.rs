@@ -155,14 +155,13 @@ enum Note {
     Attach(u64, Box<dyn Disk>, Arc<Shared>),
     Fact(u64, Record),
     Sync(u64),
-    Detach(u64),
+    Detach(u64, Sender<()>),
 }
 
 #[derive(Debug, Default)]
 struct Shared {
     durable: AtomicU64,
     failed: AtomicBool,
-    closed: AtomicBool,
     error: Mutex<Option<String>>,
 }
 
@@ -238,10 +237,10 @@ impl Journal {
     /// Writes what is left and waits for it.
     pub fn close(self) -> Option<String> {
         let _ = self.notes.send(Note::Sync(self.id));
-        let _ = self.notes.send(Note::Detach(self.id));
-        while !self.shared.closed.load(Ordering::Acquire) {
-            std::thread::yield_now();
-        }
+        let (done, finished) = channel();
+        let _ = self.notes.send(Note::Detach(self.id, done));
+        // Ends when the thread has answered, or is gone.
+        let _ = finished.recv();
         self.failure()
     }
 }
@@ -253,7 +252,7 @@ struct Attached {
     waiting: Vec<u8>,
     horizon: u64,
     sync: bool,
-    detach: bool,
+    detach: Option<Sender<()>>,
 }
 
 fn run(inbox: &Receiver<Note>) {
@@ -265,7 +264,7 @@ fn run(inbox: &Receiver<Note>) {
                 Note::Attach(id, disk, shared) => {
                     let horizon = shared.durable.load(Ordering::Acquire);
                     let waiting = Vec::new();
-                    jobs.push(Attached { id, disk, shared, waiting, horizon, sync: false, detach: false });
+                    jobs.push(Attached { id, disk, shared, waiting, horizon, sync: false, detach: None });
                 }
                 Note::Fact(id, record) => {
                     if let Some(job) = jobs.iter_mut().find(|job| job.id == id) {
@@ -276,11 +275,15 @@ fn run(inbox: &Receiver<Note>) {
                     }
                 }
                 Note::Sync(id) => jobs.iter_mut().filter(|job| job.id == id).for_each(|job| job.sync = true),
-                Note::Detach(id) => jobs.iter_mut().filter(|job| job.id == id).for_each(|job| job.detach = true),
+                Note::Detach(id, done) => {
+                    if let Some(job) = jobs.iter_mut().find(|job| job.id == id) {
+                        job.detach = Some(done);
+                    }
+                }
             }
         }
         jobs.iter_mut().for_each(Attached::settle);
-        jobs.retain(|job| !job.detach);
+        jobs.retain(|job| job.detach.is_none());
     }
 }
 
@@ -299,8 +302,8 @@ impl Attached {
             self.waiting.clear();
         }
         self.sync = false;
-        if self.detach {
-            self.shared.closed.store(true, Ordering::Release);
+        if let Some(done) = &self.detach {
+            let _ = done.send(());
         }
     }
 }

@@ -98,7 +98,8 @@ impl<O: Observer> Controller<O> {
         let outcome = if self.observer.wants_pulses() {
             let span = ends - began;
             // Times can be spread only when the number of pulses is known, so the block is stepped twice.
-            let total = if span.is_zero() { 1 } else { pulses_of(interpolator::run(model, &block, |_, _| {})) };
+            let total =
+                if span.is_zero() { 1 } else { pulses_of(interpolator::run(model, &block, |_, _| {})) };
             let observer = &mut self.observer;
             let mut count = 0;
             interpolator::run(model, &block, |dx, dy| {
@@ -119,7 +120,10 @@ impl<O: Observer> Controller<O> {
             Ok(_) => {
                 let end_um = [self.tally.x_um, self.tally.y_um];
                 let pulses = travel.pulses;
-                self.executed(&BlockEnd { number, block, start_um, end_um, pulses, began, ended: ends }, &travel);
+                self.executed(
+                    &BlockEnd { number, block, start_um, end_um, pulses, began, ended: ends },
+                    &travel,
+                );
             }
             Err(fault) => {
                 let name = match fault.cause {

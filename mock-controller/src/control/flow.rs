@@ -24,12 +24,19 @@ pub(super) struct Flow {
     pub(super) go_at: Option<Duration>,
     pub(super) held: bool,
     /// Characters since DC3 left, while they count.
-    pub(super) overrun: Option<u64>,
+    pub(super) overrun: Option<Overrun>,
     pub(super) last_character: Duration,
     /// When the last DC1 reached the sender's program.
     pub(super) last_go: Duration,
     /// The DC3 after the program's end has been sent.
     pub(super) end_said: bool,
+}
+
+/// Characters that have come since DC3 left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Overrun {
+    since: Duration,
+    characters: u64,
 }
 
 impl<O: Observer> Controller<O> {
@@ -68,7 +75,7 @@ impl<O: Observer> Controller<O> {
             let detail = format!("block {}: {fill} characters", self.tally.blocks + 1);
             return self.raise("buffer-overflow", Some(detail));
         }
-        if !self.flow.held && fill >= self.settings.xoff_at {
+        if !self.flow.held && fill >= self.settings.xoff_at && !self.is_starving() {
             self.flow.held = true;
             self.tally.holds += 1;
             let lost = self.faults.strikes(FaultKind::XoffLost);
@@ -85,14 +92,22 @@ impl<O: Observer> Controller<O> {
 
     /// Nothing is left to cut: whatever the fill, more is needed to complete a block.
     pub(super) fn starved(&mut self) {
-        if self.flow.held && self.is_running() && self.cut.is_none() && self.queue.is_empty() {
+        if self.flow.held && self.is_running() && self.is_starving() {
             self.release();
         }
+    }
+
+    /// A control that has nothing to cut does not ask for silence.
+    fn is_starving(&self) -> bool {
+        self.cut.is_none() && self.queue.is_empty()
     }
 
     fn release(&mut self) {
         self.flow.held = false;
         self.say_go();
+        if self.flow.go_at.is_some() {
+            self.flow.go_at = Some(self.now + GO_AGAIN);
+        }
     }
 
     fn say_go(&mut self) {
@@ -122,7 +137,7 @@ impl<O: Observer> Controller<O> {
     pub(super) fn sent(&mut self) {
         match self.back.complete() {
             Some((Meaning::Hold, _)) => {
-                self.flow.overrun = Some(0);
+                self.flow.overrun = Some(Overrun { since: self.now, characters: 0 });
                 self.utilisation.hold_begins(self.now);
             }
             Some((Meaning::Go, arrival)) => {
@@ -139,10 +154,14 @@ impl<O: Observer> Controller<O> {
         let Some(overrun) = &mut self.flow.overrun else {
             return;
         };
-        *overrun += 1;
-        let overrun = *overrun;
+        if self.now <= overrun.since + SAME_INSTANT {
+            return;
+        }
+        overrun.characters += 1;
+        let overrun = overrun.characters;
         self.tally.max_overrun = self.tally.max_overrun.max(overrun);
-        if overrun > self.settings.overrun_limit && self.is_running() {
+        // After a reset there is no buffer to overrun; it is only counted.
+        if overrun > self.settings.overrun_limit && self.is_running() && !self.flow.deaf {
             let detail = format!("block {}: {overrun} characters after DC3", self.tally.blocks + 1);
             self.raise("overrun", Some(detail));
         }
@@ -206,6 +225,9 @@ const SYN: u8 = 0x16;
 
 /// "Haas repeats DC1 after 5 s of silence" (domain/4, rule 3, [man]).
 const GO_AGAIN: Duration = Duration::from_secs(5);
+
+/// A character that completes together with DC3's stop bit is no overrun; both times are rounded to the nanosecond.
+const SAME_INSTANT: Duration = Duration::from_nanos(2);
 
 /// How long the line must have been silent after a program's end before the control says that it has heard it. A guess:
 /// longer than any pause between a stop word and its trailer, shorter than anyone waits.

@@ -10,9 +10,11 @@ use crate::observer::Observer;
 use std::time::Duration;
 
 impl<O: Observer> Controller<O> {
-    /// When the next character is complete. An unpaced line carries nothing during a hold.
+    /// When the next character is complete. An unpaced line carries nothing during a hold, nor before what the control
+    /// has to say has left it.
     pub(super) fn character_due(&self) -> Option<Duration> {
-        if self.settings.pace == Pace::Unpaced && self.flow.held && self.is_running() {
+        let held = (self.flow.held && self.is_running()) || !self.back.is_idle();
+        if self.settings.pace == Pace::Unpaced && held {
             return None;
         }
         self.forward.completion().map(|at| at.max(self.now))

@@ -252,7 +252,8 @@ impl Reader {
     }
 
     fn label_ends(&mut self, text: &mut Text, observer: &mut impl Observer) -> Read {
-        let is_word = self.label_skip == LabelSkip::Auto && matches!(self.word.as_slice(), b"D" | b"DD" | b"E");
+        let is_word =
+            self.label_skip == LabelSkip::Auto && matches!(self.word.as_slice(), b"D" | b"DD" | b"E");
         if is_word {
             let pauses = self.word == b"D";
             self.skipped = self.skipped.saturating_sub(self.word.len() as u64);
@@ -397,7 +398,8 @@ impl Reader {
     /// Discards the label's text but for its last `keep` characters.
     fn skip_pending_but(&mut self, keep: usize) {
         let discarded = self.pending.len().saturating_sub(keep);
-        self.skipped += self.pending[..discarded].iter().filter(|byte| !byte.is_ascii_whitespace()).count() as u64;
+        self.skipped +=
+            self.pending[..discarded].iter().filter(|byte| !byte.is_ascii_whitespace()).count() as u64;
         self.pending.drain(..discarded);
         self.characters = keep;
     }

@@ -144,7 +144,10 @@ impl Settings {
             return Err(SettingsError::BufferTooSmall { buffer_bytes: self.buffer_bytes, needed });
         }
         if self.buffer_bytes < self.xoff_at {
-            return Err(SettingsError::BufferTooSmall { buffer_bytes: self.buffer_bytes, needed: self.xoff_at });
+            return Err(SettingsError::BufferTooSmall {
+                buffer_bytes: self.buffer_bytes,
+                needed: self.xoff_at,
+            });
         }
         if !(0.0..=1e6).contains(&self.cutting_time) {
             return Err(SettingsError::CuttingTime(self.cutting_time));
@@ -209,12 +212,19 @@ impl fmt::Display for SettingsError {
                 "a buffer of {buffer_bytes} is smaller than the {needed} that xoff-at, the overrun limit and one \
                  character need"
             ),
-            SettingsError::CuttingTime(ratio) => write!(f, "cutting time {ratio} is not between 0 and 1000000"),
+            SettingsError::CuttingTime(ratio) => {
+                write!(f, "cutting time {ratio} is not between 0 and 1000000")
+            }
             SettingsError::CuttingTimeUnpaced => {
-                write!(f, "an unpaced line has no character time of which the cutting time could be a multiple")
+                write!(
+                    f,
+                    "an unpaced line has no character time of which the cutting time could be a multiple"
+                )
             }
             SettingsError::NoFifo => write!(f, "a driver FIFO of 0 takes nothing"),
-            SettingsError::Rate { kind, rate } => write!(f, "fault {kind}: rate {rate} is not between 0 and 1"),
+            SettingsError::Rate { kind, rate } => {
+                write!(f, "fault {kind}: rate {rate} is not between 0 and 1")
+            }
         }
     }
 }

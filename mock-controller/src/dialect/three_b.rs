@@ -277,7 +277,11 @@ impl Assembly {
         let largest = if index == 2 { J_MAX_UM } else { COORDINATE_MAX_UM };
         let number = self.numbers[index].saturating_mul(10).saturating_add(u32::from(digit));
         if number > largest {
-            return self.wrong(if index == 2 { "a J of at most 999 999 µm" } else { "at most 99 999 999 µm" });
+            return self.wrong(if index == 2 {
+                "a J of at most 999 999 µm"
+            } else {
+                "at most 99 999 999 µm"
+            });
         }
         self.numbers[index] = number;
         self.place = Place::Digits(index);
@@ -316,7 +320,8 @@ mod tests {
     #[test]
     fn the_papers_block_is_read_with_blanks_padding_and_a_bare_axis() {
         let block = parse_block("B579 B6617 B006617 Y L2").unwrap();
-        let wanted = Block { x: 579, y: 6617, j: 6617, g: Axis::Y, kind: Kind::Line, quadrant: Quadrant::Second };
+        let wanted =
+            Block { x: 579, y: 6617, j: 6617, g: Axis::Y, kind: Kind::Line, quadrant: Quadrant::Second };
         assert_eq!(block, wanted);
     }
 
@@ -334,8 +339,21 @@ mod tests {
     #[test]
     fn what_is_not_the_whole_pattern_is_refused() {
         for wrong in [
-            "", "B1B2GXL1", "B1B2B3B4GXL1", "B1 2B3B4GXL1", "B-1B2B3GXL1", "B1B2B3GZL1", "B1B2B3GXL5", "B1B2B3GXL0",
-            "B1B2B3GXR1", "B1B2B3GX", "B1B2B3L1", "B1B2B3GXL1x", "B1.5B2B3GXL1", "B1B2B1000000GXL1", "B100000000B2B3GXL1",
+            "",
+            "B1B2GXL1",
+            "B1B2B3B4GXL1",
+            "B1 2B3B4GXL1",
+            "B-1B2B3GXL1",
+            "B1B2B3GZL1",
+            "B1B2B3GXL5",
+            "B1B2B3GXL0",
+            "B1B2B3GXR1",
+            "B1B2B3GX",
+            "B1B2B3L1",
+            "B1B2B3GXL1x",
+            "B1.5B2B3GXL1",
+            "B1B2B1000000GXL1",
+            "B100000000B2B3GXL1",
         ] {
             assert!(parse_block(wrong).is_err(), "{wrong}");
         }

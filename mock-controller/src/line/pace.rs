@@ -27,7 +27,7 @@ pub enum Parity {
 }
 
 impl Framing {
-    /// 7 data bits, even parity, 2 stop bits: typical of reader/puncher interfaces (domain/4, [man]).
+    /// 7 data bits, even parity, 2 stop bits: typical of reader/puncher interfaces (domain/4, from a manual).
     pub const SEVEN_EVEN_TWO: Framing = Framing { data: 7, parity: Parity::Even, stop: 2 };
 
     /// Bits on the line for one character, start bit included.

@@ -4,7 +4,7 @@
 //! coming back. Since a hang-up cannot be waited for to go away, a closed link is looked at every few milliseconds.
 //! A slave that is closed and opened again between two looks counts as open throughout.
 //!
-//! A sender usually throws away stale input just after opening. So an opening is told only after [`SETTLE`], or with the
+//! A sender usually throws away stale input just after opening. So an opening is told only after `SETTLE`, or with the
 //! first byte, lest the first DC1 be thrown away with it.
 //!
 //! Measured on Linux only. A pseudo-terminal ignores baud and parity; pacing is the control's own (domain/4).
@@ -47,7 +47,8 @@ impl PtyLink {
     /// What the system says.
     pub fn new(link: &Path) -> io::Result<Self> {
         let (master, slave) = open_pair()?;
-        let pty = PtyLink { link: link.to_owned(), master, slave, state: State::Closed, clock: Clock::start() };
+        let pty =
+            PtyLink { link: link.to_owned(), master, slave, state: State::Closed, clock: Clock::start() };
         pty.point()?;
         Ok(pty)
     }
@@ -57,7 +58,10 @@ impl PtyLink {
         if let Ok(found) = fs::symlink_metadata(&self.link)
             && !found.file_type().is_symlink()
         {
-            return Err(io::Error::new(io::ErrorKind::AlreadyExists, "there is a file that is no symbolic link"));
+            return Err(io::Error::new(
+                io::ErrorKind::AlreadyExists,
+                "there is a file that is no symbolic link",
+            ));
         }
         let mut name = self.link.as_os_str().to_owned();
         name.push(format!(".{}", std::process::id()));

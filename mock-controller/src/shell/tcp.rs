@@ -44,7 +44,9 @@ impl TcpLink {
                 self.lost = false;
                 Ok(News::Opened)
             }
-            Err(error) if is_passing(&error) || error.kind() == io::ErrorKind::ConnectionAborted => Ok(News::Quiet),
+            Err(error) if is_passing(&error) || error.kind() == io::ErrorKind::ConnectionAborted => {
+                Ok(News::Quiet)
+            }
             Err(error) => Err(error),
         }
     }

@@ -1,0 +1,11 @@
+//! The control and its line on a virtual clock, fed by a sender of the tests' own. Nothing here sleeps.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests, too, fail by panicking")]
+
+mod arcs;
+mod ends;
+mod faults;
+mod flow;
+mod lines;
+mod sender;
+mod torn;

@@ -1,0 +1,96 @@
+//! The command line: what parses, what does not, and with which exit code.
+
+use std::process::{Command, Output};
+
+fn run(words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_mock-controller")).args(words).output().unwrap()
+}
+
+#[test]
+fn words_it_does_not_know_are_wrong_usage() {
+    for words in [
+        &[][..],
+        &["--pty", "a", "--tcp", "localhost:0"],
+        &["--tcp", "localhost:0", "--baud", "9600", "--unpaced"],
+        &["--tcp", "localhost:0", "--baud", "0"],
+        &["--tcp", "localhost:0", "--protocol", "xmodem"],
+        &["--tcp", "localhost:0", "--dialect", "4b"],
+        &["--tcp", "localhost:0", "--machine", "x.toml"],
+        &["--tcp", "localhost:0", "--wire-offset", "0.1"],
+        &["--tcp", "localhost:0", "--taper", "1"],
+        &["--tcp", "localhost:0", "--interpolator", "any"],
+        &["--tcp", "localhost:0", "--framing", "7X2"],
+        &["--tcp", "localhost:0", "--fault", "dsr-drop=0.1"],
+        &["--tcp", "localhost:0", "--fault", "flip"],
+        &["--tcp", "localhost:0", "--fault", "flip=2"],
+        &["--tcp", "localhost:0", "--fault", "flip=0.1", "--fault", "flip=0.2"],
+        &["--port", "/dev/null", "--fault", "disconnect=0.1"],
+        &["--tcp", "localhost:0", "--xon-at", "300"],
+        &["--tcp", "localhost:0", "--buffer", "195"],
+        &["--tcp", "localhost:0", "--unpaced", "--cutting-time", "1"],
+        &["--tcp", "localhost:0", "--cutting-time", "-1"],
+        &["--tcp", "localhost:0", "--start-delay", "soon"],
+        &["--tcp", "localhost:0", "--latency", "-1"],
+        &["--tcp", "localhost:0", "--torn", "mend"],
+    ] {
+        let output = run(words);
+        assert_eq!(output.status.code(), Some(2), "{words:?}");
+        assert!(output.stdout.is_empty() && !output.stderr.is_empty(), "{words:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_opened_is_a_failure_that_names_it() {
+    for (words, name) in [
+        (&["--tcp", "256.0.0.1:0"][..], "256.0.0.1:0"),
+        (&["--port", "/nowhere/tty"], "/nowhere/tty"),
+        (&["--pty", "/nowhere/link"], "/nowhere/link"),
+        (&["--tcp", "127.0.0.1:0", "--trace", "/nowhere/trace"], "/nowhere/trace"),
+        (&["--tcp", "127.0.0.1:0", "--status", "/nowhere/status"], "/nowhere/status"),
+    ] {
+        let output = run(words);
+        assert_eq!(output.status.code(), Some(1), "{words:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains(name), "{words:?}: {message}");
+    }
+}
+
+#[test]
+fn the_help_names_every_option() {
+    let output = run(&["--help"]);
+    assert_eq!(output.status.code(), Some(0));
+    let help = String::from_utf8(output.stdout).unwrap();
+    for option in [
+        "--pty",
+        "--tcp",
+        "--port",
+        "--protocol",
+        "--baud",
+        "--unpaced",
+        "--framing",
+        "--dialect",
+        "--interpolator",
+        "--buffer",
+        "--xoff-at",
+        "--xon-at",
+        "--overrun-limit",
+        "--dc3-parity",
+        "--latency",
+        "--cutting-time",
+        "--start-delay",
+        "--torn",
+        "--label-skip",
+        "--alarm-at-block",
+        "--reset-at-block",
+        "--fault",
+        "--seed",
+        "--once",
+        "--report",
+        "--status",
+        "--trace",
+        "--picture",
+        "--save",
+    ] {
+        assert!(help.contains(option), "{option}");
+    }
+}

@@ -1,0 +1,182 @@
+//! What a person reads when a command fails, and the exit code that says whose turn it is.
+
+use std::fmt::{self, Display};
+use std::io::{self, IsTerminal, Write};
+use std::process::ExitCode;
+
+use miette::{
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
+    SourceSpan, SpanContents,
+};
+
+use crate::formats::three_b::read::ReadError;
+use crate::journal::writer::JournalError;
+use crate::keys::KeyError;
+use crate::link::LinkError;
+use crate::place::Place;
+use crate::shapes::cycloid_gear::Impossible;
+
+/// The exit codes of the command line.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[repr(u8)]
+pub(super) enum Exit {
+    /// A failure of ours or the system's.
+    Ours = 1,
+    /// Wrong usage.
+    Usage = 2,
+    /// The program, drawing or part is at fault.
+    Program = 3,
+    /// The machine profile is.
+    Profile = 4,
+    /// The link failed or is busy.
+    Link = 5,
+    /// The control refused or alarmed.
+    Control = 6,
+    /// Stopped by the operator, resumable.
+    Stopped = 7,
+}
+
+/// A command that did not do what it was asked.
+#[derive(Debug)]
+pub(super) struct Failure {
+    exit: Option<Exit>,
+    message: String,
+    place: Option<(String, Place)>,
+    help: Option<String>,
+    /// A command line that goes on from here.
+    resume: Option<String>,
+}
+
+impl Failure {
+    pub(super) fn new(exit: Exit, message: impl Into<String>) -> Self {
+        Self { exit: Some(exit), message: message.into(), place: None, help: None, resume: None }
+    }
+
+    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub(super) fn at(mut self, file: &str, place: Place) -> Self {
+        self.place = Some((file.to_owned(), place));
+        self
+    }
+
+    /// Puts words before the message.
+    pub(super) fn prefix(&mut self, words: &str) {
+        self.message = format!("{words}: {}", self.message);
+    }
+
+    pub(super) fn resume_with(mut self, command: String) -> Self {
+        self.resume = Some(command);
+        self
+    }
+
+    /// From a failed write to standard output: a closed pipe is no failure.
+    pub(super) fn output(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            return Self { exit: None, message: String::new(), place: None, help: None, resume: None };
+        }
+        Self::new(Exit::Ours, format!("cannot write to standard output: {error}"))
+    }
+
+    pub(super) fn keys(exit: Exit, file: &str, error: KeyError) -> Self {
+        let failure = Self::new(exit, error.message).at(file, error.place);
+        match error.help {
+            Some(help) => failure.help(help),
+            None => failure,
+        }
+    }
+
+    pub(super) fn read(file: &str, error: ReadError) -> Self {
+        match error {
+            ReadError::Io(error) => Self::new(Exit::Program, format!("{file}: {error}")),
+            ReadError::Program { message, place, help } => Self::new(Exit::Program, message).at(file, place).help(help),
+        }
+    }
+
+    pub(super) fn gear(error: &Impossible) -> Self {
+        Self::new(Exit::Program, error.to_string()).help(error.help())
+    }
+
+    pub(super) fn link(error: &LinkError) -> Self {
+        Self::new(Exit::Link, error.to_string()).help(error.help())
+    }
+
+    pub(super) fn journal(error: &JournalError) -> Self {
+        let help = match error {
+            JournalError::Io { .. } => "nothing was sent; make room or name another directory with --journal DIR",
+            JournalError::InUse { .. } => "wait for the other dripfeed to end, or look at it with `dripfeed jobs`",
+            JournalError::Unreadable { .. } => "start the job again with `dripfeed send`; the journal is left as it is",
+        };
+        Self::new(Exit::Ours, error.to_string()).help(help)
+    }
+
+    /// Prints the failure and returns its exit code.
+    pub(super) fn report(&self) -> ExitCode {
+        let Some(exit) = self.exit else { return ExitCode::SUCCESS };
+        let mut error = io::stderr().lock();
+        // Nobody is left to tell when standard error is closed too.
+        let _ = error.write_all(self.render().as_bytes());
+        ExitCode::from(exit as u8)
+    }
+
+    fn render(&self) -> String {
+        let mut theme = if io::stderr().is_terminal() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+        theme.characters.error = "error:".to_owned();
+        let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false).with_context_lines(0);
+        let mut text = String::new();
+        // Writing into a string cannot fail.
+        let _ = handler.render_report(&mut text, self);
+        let mut text = text.trim_start().to_owned();
+        if let Some(resume) = &self.resume {
+            text.push_str(&format!("to go on: {resume}\n"));
+        }
+        text
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl Diagnostic for Failure {
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.place.as_ref().map(|_| self as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let (_, place) = self.place.as_ref()?;
+        let span = LabeledSpan::underline((place.caret, place.width));
+        Some(Box::new(std::iter::once(span)))
+    }
+}
+
+/// The excerpt of the place, numbered as in the file it comes from.
+impl SourceCode for Failure {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        _before: usize,
+        _after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let Some((file, place)) = &self.place else { return Err(MietteError::OutOfBounds) };
+        let column = if span.offset() == 0 { 0 } else { place.column as usize - 1 - place.caret };
+        Ok(Box::new(MietteSpanContents::new_named(
+            file.clone(),
+            place.excerpt.as_bytes(),
+            SourceSpan::from((0, place.excerpt.len())),
+            place.line as usize - 1,
+            column,
+            1,
+        )))
+    }
+}

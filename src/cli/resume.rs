@@ -1,0 +1,206 @@
+//! `dripfeed resume [JOB] --from-block N`: goes on with a job that broke off.
+//!
+//! ```text
+//! $ dripfeed resume gear-20260101T120000 --from-block 118
+//! job gear-20260101T120000 of /home/me/gear.toml: broken-off
+//! handed over whole: up to block 120; may have been sent: up to block 134; accepted: not known
+//! block 118 begins 3.213 mm, -5.871 mm from where the program began
+//! ```
+//!
+//! What the control executed is read off the control; the block after it is N. The program is made again from the same
+//! source, compared with the journal's digests, and sent from block N. Nothing is sent that was not shown, and nothing
+//! starts without a yes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::failure::{Exit, Failure};
+use super::feeding::{self, Feeding, LineOptions, Connection};
+use super::jobs;
+use super::send::quoted;
+use super::source::{Kind, Source};
+use crate::formats::three_b::Block;
+use crate::interpolator::Model;
+use crate::journal::Record;
+use crate::journal::history::History;
+use crate::journal::resume::{Answer, Plan, Refusal, decide};
+use crate::journal::writer::{self, Writer};
+use crate::link::Port;
+use crate::part::Prepared;
+use crate::program::{Line, ProgramError};
+use crate::rounding::Aim;
+use crate::units::Position;
+
+/// Go on with a job that broke off, from a block the operator names
+#[derive(Args, Debug)]
+pub(super) struct Options {
+    /// The job [default: the newest that is not done]
+    job: Option<String>,
+    /// The block to send first: the one after the last that the control executed
+    #[arg(long, value_name = "N")]
+    from_block: Option<u64>,
+    /// The source, if it is not where it was
+    #[arg(long)]
+    source: Option<String>,
+    /// The port, if it is not the same
+    #[arg(long, value_name = "PORT", value_parser = Port::parse)]
+    port: Option<Port>,
+    /// The control was reset or cleared: no partial block stands in it
+    #[arg(long)]
+    control_cleared: bool,
+    /// Print the program text that would be sent, and open no port
+    #[arg(long)]
+    dry_run: bool,
+    /// Answer every question with yes; needs --from-block
+    #[arg(long, requires = "from_block")]
+    yes: bool,
+    /// Where journals are kept [default: $XDG_STATE_HOME/dripfeed]
+    #[arg(long, value_name = "DIR")]
+    journal: Option<PathBuf>,
+    /// Write the figures of the feed here, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    line: LineOptions,
+}
+
+pub(super) fn run(options: Options) -> Result<(), Failure> {
+    let directory = jobs::directory(options.journal.as_deref())?;
+    let history = jobs::find(&directory, options.job.as_deref())?;
+    let job = history.job.clone();
+    let word = options.source.as_deref().unwrap_or(&job.source);
+    if word == "-" {
+        return Err(Failure::new(Exit::Usage, "the job came from standard input, which cannot be read again")
+            .help("name the program with --source FILE"));
+    }
+    let source = Source::open(word, Kind::named(&job.kind))?;
+    if source.is_stream() {
+        return Err(Failure::new(Exit::Usage, format!("{word} can be read only once; name a file with --source")));
+    }
+    let line = options.line.clone().or(&job.settings);
+    let profile = feeding::profile(Some(&job.machine), &line)?;
+    if options.line.words().is_empty() && feeding::profile_digest(&profile) != job.machine_digest {
+        return Err(Failure::new(Exit::Profile, format!("the machine profile {} has changed since the job was sent", job.machine))
+            .help("give the changed values on the command line (--baud, --framing, --set), so that they are meant"));
+    }
+
+    let program = source.compare(&history.segments)?;
+    eprint!("{}", account(&history));
+    let discards_partial = !profile.tape.end_of_block.is_empty() && !profile.tape.leader.is_empty();
+    let mut answer = Answer { from_block: options.from_block, control_cleared: options.control_cleared };
+    let mut decision = decide(&history, &program, answer, discards_partial);
+    if let Err(Refusal::AskBlock { .. }) = decision {
+        let text = feeding::answer("The block after the last one that the control executed: ")?;
+        let block = text.trim().parse().map_err(|_| Failure::new(Exit::Usage, format!("`{}` is not a block number", text.trim())))?;
+        answer.from_block = Some(block);
+        decision = decide(&history, &program, answer, discards_partial);
+    }
+    let Plan { from_block, repeated } = decision.map_err(|refusal| refused(&refusal))?;
+    if options.dry_run {
+        return feeding::dry_run(&source, from_block);
+    }
+    eprint!("{}", spot(&source, from_block, program.blocks)?);
+    if repeated > 0 {
+        eprintln!("{repeated} blocks that may have been sent before go out again");
+    }
+
+    let port = match options.port {
+        Some(port) => port,
+        None => Port::parse(&job.port).map_err(|error| Failure::new(Exit::Usage, error))?,
+    };
+    feeding::ask(&format!("Does the wire stand where block {from_block} begins? Go on?"), options.yes)?;
+    let connection = Connection::plan(port, profile, &line);
+    let link = connection.open()?;
+    let (file, _) = writer::reopen(&directory, &job.job).map_err(|error| Failure::journal(&error))?;
+    let writer = Writer::start().map_err(|error| Failure::new(Exit::Ours, error.to_string()))?;
+    let journal = writer.attach(Box::new(file), from_block - 1);
+    journal.note(Record::Resumed { block: from_block, at: feeding::time_of_day(), port: connection.port.to_string() });
+    let mut resume = format!("dripfeed resume {}", job.job);
+    if options.journal.is_some() {
+        resume.push_str(&format!(" --journal {}", quoted(&directory.display().to_string())));
+    }
+    Feeding { source: &source, line: connection, link, journal, job: job.job, from_block, report: options.report, resume }.run()
+}
+
+fn refused(refusal: &Refusal) -> Failure {
+    let (exit, help) = match refusal {
+        Refusal::Changed { .. } => (Exit::Program, "put the old source back, name it with --source, or start anew with `dripfeed send`"),
+        Refusal::NoSuchBlock { .. } => (Exit::Usage, "blocks count from 1 as sent, the lead-in is block 1"),
+        Refusal::WouldSkip { .. } => (Exit::Usage, "name the block after the last one that the control executed"),
+        Refusal::Done { .. } => (Exit::Usage, "send it again with `dripfeed send`, or part of it with --from-block N"),
+        Refusal::AskBlock { .. } => (Exit::Usage, "name it with --from-block N"),
+        Refusal::MayBeTorn => (Exit::Usage, "reset or clear the control, then say so with --control-cleared"),
+    };
+    Failure::new(exit, refusal.to_string()).help(help)
+}
+
+/// What is known of the job.
+fn account(history: &History) -> String {
+    let mut text = format!(
+        "job {} of {}: {}\nhanded over whole: up to block {}; may have been sent: up to block {}; accepted: not known over DC codes\n",
+        history.job.job,
+        history.job.source,
+        history.state(),
+        history.sent,
+        history.horizon
+    );
+    match &history.ended {
+        Some(ended) if ended.torn_bytes > 0 => text.push_str(&format!(
+            "block {} is torn: {} bytes of it were sent; the leader's end of block makes the control drop them\n",
+            ended.block + 1,
+            ended.torn_bytes
+        )),
+        None => text.push_str(
+            "the job broke off: a part of a block may stand in the control; the leader's end of block makes it drop that\n",
+        ),
+        Some(_) => {}
+    }
+    text
+}
+
+/// The text around a block and where the wire stands when it begins.
+fn spot(source: &Source, from_block: u64, blocks: u64) -> Result<String, Failure> {
+    let model = source.prepared().map_or(Model::Rotated, reference_model);
+    let mut program = source.program()?;
+    let (mut text, mut lines, mut block, mut stands) = (Vec::new(), String::new(), 0u64, Position::default());
+    let first_shown = from_block.saturating_sub(SHOWN_BEFORE);
+    while block <= from_block + SHOWN_AFTER {
+        text.clear();
+        let made: Block = match program.pull(&mut text) {
+            Ok(Some(Line::Block(made))) => made,
+            Ok(Some(Line::StopWord)) => continue,
+            Ok(None) => break,
+            Err(ProgramError::Read(error)) => return Err(Failure::read(&source.path, error)),
+        };
+        block += 1;
+        if block < from_block {
+            stands += model.displacement(&made).map_err(|fault| Failure::new(Exit::Program, format!("block {block}: {fault}")))?;
+        }
+        if block >= first_shown {
+            let mark = if block == from_block { '>' } else { ' ' };
+            lines.push_str(&format!("{mark} {block:>8}  {}\n", String::from_utf8_lossy(&text)));
+        }
+    }
+    if from_block > blocks {
+        lines.push_str(&format!("> after block {blocks} only the stop word is left\n"));
+    }
+    lines.push_str(&format!(
+        "block {from_block} begins {:.3} mm, {:.3} mm from where the program began (by the {} model)\n",
+        stands.x.millimetres(),
+        stands.y.millimetres(),
+        model.name()
+    ));
+    Ok(lines)
+}
+
+/// The model positions are told by; one that serves every control agrees with all.
+fn reference_model(prepared: &Prepared) -> Model {
+    match prepared.part().aim {
+        Aim::One(model) => model,
+        Aim::Any => Model::Rotated,
+    }
+}
+
+const SHOWN_BEFORE: u64 = 2;
+const SHOWN_AFTER: u64 = 2;
