@@ -123,8 +123,8 @@ pub enum Phase {
 
 /// One end of a conversation with a control.
 pub trait Protocol: Send {
-    /// Whether the machine has room for another block.
-    fn wants_block(&self) -> bool;
+    /// Whether the machine has room for another block: less than the window is waiting here and on the wire.
+    fn wants_block(&self, now: Duration) -> bool;
     /// Gives the next block: its number and the bytes of it that go on the line, end of block included.
     fn offer_block(&mut self, number: u64, bytes: &[u8]);
     /// Says that there are no more blocks.

@@ -183,7 +183,8 @@ impl<O: Observer> Controller<O> {
         self.now = self.now.max(now);
     }
 
-    /// When something happens next without anybody's doing; `None`: nothing will.
+    /// When something happens next without anybody's doing; `None`: nothing will. What the control has said counts until
+    /// it has been taken by [`Controller::receive`].
     #[must_use]
     pub fn next_wakeup(&self) -> Option<Duration> {
         let event = self.next_event().map(|(at, _)| at);

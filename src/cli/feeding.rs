@@ -128,17 +128,19 @@ pub(super) struct Connection {
 impl Connection {
     /// Works out the pacing and says what it means, before the port is opened.
     pub(super) fn plan(port: Port, profile: Profile, options: &LineOptions) -> Self {
-        let (paced, latency, source) = match &port {
-            Port::Tcp(_) => {
-                let latency = profile.receive_latency.unwrap_or_default();
-                (options.baud.is_some() && !options.unpaced, latency, "a network's is not known")
+        // Where no adapter delays what the control says, this process itself may still be late to hear it.
+        let own = OWN_DELAY.min(2 * profile.framing.character(profile.baud));
+        let (paced, latency, source) = match (&port, profile.receive_latency) {
+            (Port::Tcp(_), given) => {
+                let source = if given.is_some() { "from the profile" } else { "for this system's own delays; the network's is not known" };
+                (options.baud.is_some() && !options.unpaced, given.unwrap_or(own), source)
             }
-            Port::Serial(device) => match (profile.receive_latency, Latency::of(device)) {
-                (Some(latency), _) => (!options.unpaced, latency, "from the profile"),
-                (None, Latency::Nothing) => (!options.unpaced, Duration::ZERO, "a pseudo-terminal has none"),
-                (None, Latency::Adapter(latency)) => (true, latency, "the adapter's latency timer and 1 ms"),
-                (None, Latency::Assumed(latency)) => {
-                    (true, latency, "ASSUMED: the adapter does not say; set receive_latency_ms")
+            (Port::Serial(_), Some(latency)) => (!options.unpaced, latency, "from the profile"),
+            (Port::Serial(device), None) => match Latency::of(device) {
+                Latency::Nothing => (!options.unpaced, own, "for this system's own delays"),
+                Latency::Adapter(latency) => (!options.unpaced, latency, "the adapter's latency timer and 1 ms"),
+                Latency::Assumed(latency) => {
+                    (!options.unpaced, latency, "ASSUMED: the adapter does not say; set receive_latency_ms")
                 }
             },
         };
@@ -156,7 +158,7 @@ impl Connection {
         };
         let worst = self.pace.worst_overrun();
         eprintln!(
-            "{}: {baud} baud {framing}, window {} bytes, receive latency {:.0} ms ({latency_source})",
+            "{}: {baud} baud {framing}, window {} bytes, receive latency {:.1} ms ({latency_source})",
             self.port,
             self.pace.window,
             self.pace.latency.as_secs_f64() * 1e3
@@ -491,6 +493,8 @@ pub(super) fn conclude(outcome: Outcome, job: &str, resume: &str, source: &str) 
 }
 
 
+/// How late this process may be to hear the control, where the link itself adds nothing. A guess.
+const OWN_DELAY: Duration = Duration::from_millis(3);
 /// How often the screen is refreshed and a stop noticed.
 const REFRESH: Duration = Duration::from_millis(50);
 /// A part with more elements is not counted beforehand; its progress has no percentage.

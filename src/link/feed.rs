@@ -208,7 +208,7 @@ impl Feed<'_> {
                 self.await_batch(wait.min(BATCH_POLL));
                 self.link.receive(&mut buffer, Duration::ZERO)
             } else {
-                let waiting_for_disk = self.protocol.wants_block() && !self.exhausted;
+                let waiting_for_disk = !self.exhausted && self.protocol.wants_block(now);
                 self.link.receive(&mut buffer, if waiting_for_disk { wait.min(DISK_POLL) } else { wait })
             };
             let now = self.now();
@@ -251,7 +251,7 @@ impl Feed<'_> {
             }
         }
         let up_to = self.journal.allowed();
-        if !self.asked && !self.exhausted && self.protocol.wants_block() && self.next_block <= up_to {
+        if !self.asked && !self.exhausted && self.next_block <= up_to && self.protocol.wants_block(now) {
             // One block where the line is paced; where it is not, as much as keeps the link busy.
             let single = self.paced || self.protocol.tally().bytes <= BATCH_FROM;
             let request = Request { bytes: if single { 1 } else { BATCH_BYTES }, up_to };
@@ -315,7 +315,7 @@ impl Feed<'_> {
                     if count < offered {
                         return true;
                     }
-                    if !self.exhausted && self.protocol.wants_block() {
+                    if !self.exhausted && self.protocol.wants_block(now) {
                         return false;
                     }
                 }

@@ -36,15 +36,6 @@ pub enum Latency {
 }
 
 impl Latency {
-    /// The time itself.
-    #[must_use]
-    pub fn duration(self) -> Duration {
-        match self {
-            Self::Nothing => Duration::ZERO,
-            Self::Adapter(time) | Self::Assumed(time) => time,
-        }
-    }
-
     /// The latency of a serial device, from what the system tells of its adapter (Linux).
     #[must_use]
     pub fn of(device: &str) -> Self {

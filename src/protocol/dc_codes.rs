@@ -236,8 +236,8 @@ impl DcCodes {
 }
 
 impl Protocol for DcCodes {
-    fn wants_block(&self) -> bool {
-        let ahead = self.left();
+    fn wants_block(&self, now: Duration) -> bool {
+        let ahead = self.left() + self.pacer.unsent(now);
         match self.state {
             // Before the start one block is fetched, so that a program that cannot even begin is known by then.
             State::AwaitingStart { .. } => !self.source_finished && !self.stopping && self.ends.is_empty(),
@@ -341,9 +341,9 @@ impl Protocol for DcCodes {
     fn poll_timeout(&self, now: Duration) -> Option<Duration> {
         match self.state {
             State::AwaitingStart { since } => self.settings.start_timeout.map(|limit| since + limit),
-            State::Feeding if self.left() > 0 => self.pacer.room_at(now),
             // Waiting for the source; the link's loop wakes when a block is there.
-            State::Feeding => None,
+            State::Feeding if self.left() == 0 && self.wants_block(now) => None,
+            State::Feeding => self.pacer.room_at(now),
             State::Held { .. } => None,
             State::Draining => Some(self.pacer.free_at()),
             State::Lingering { until } => Some(until),

@@ -34,13 +34,14 @@ fn page(prepared: &Prepared, watch: &Watch, verdict: &Verdict) -> Picture {
     .flatten());
 
     let tip = part.gear.module * part.gear.teeth as f64 / 2.0 * 1.1;
+    let reach = reach(watch);
     let mark = Outline::from([0.0, -0.55 * tip]).arc_to([-0.55 * tip, 0.0], [0.0, 0.0], Turn::Clockwise);
     let mut marks = vec![
         Shape::start(origin),
         Shape::text(Class::Label, origin, Align::Left, "start").nudged([4.0, -1.2]),
         Shape::path(Class::Direction, mark.clone()),
         Shape::text(Class::Label, [-0.39 * tip, -0.39 * tip], Align::Left, "direction of cut").nudged([2.5, 1.0]),
-        Shape::dimension([-tip, -1.22 * tip], [tip, -1.22 * tip], &format!("Ø {:.3}", 2.0 * reach(watch))),
+        Shape::dimension([-reach, -1.22 * tip], [reach, -1.22 * tip], &format!("Ø {:.3} over the path", 2.0 * reach)),
     ];
     marks.extend(mark.along(1.0).map(|end| Shape::head(Class::Direction, end.at, end.heading)));
     let marks = sketch(marks);

@@ -144,7 +144,7 @@ fn a_stop_waits_for_the_end_of_the_block_and_a_second_one_does_not() {
     m.offer_block(2, b"B2B2\n");
     m.handle_transmitted(4, MS);
     m.handle_command(Command::StopAtBlock, MS);
-    assert!(!m.wants_block());
+    assert!(!m.wants_block(MS));
     assert_eq!(take(&mut m, MS), b"B1\n");
     m.handle_timeout(2 * MS);
     assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Stopped { torn: None })));
@@ -190,7 +190,7 @@ fn blocks_are_asked_for_only_when_the_window_has_room() {
     let character = Duration::from_micros(1146);
     let mut m = DcCodes::new(settings(Pace::free(character, 4 * MS, 10)), Duration::ZERO);
     m.handle_received(&[0x11], Duration::ZERO);
-    assert!(m.wants_block());
+    assert!(m.wants_block(MS));
     m.offer_block(1, &[b'B'; 20]);
-    assert!(!m.wants_block());
+    assert!(!m.wants_block(MS));
 }
