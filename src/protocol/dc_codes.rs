@@ -134,6 +134,10 @@ impl DcCodes {
         self.source_finished && self.left() == 0
     }
 
+    fn is_only_trailer_left(&self) -> bool {
+        self.source_finished && self.left() > 0 && self.left() == self.trailer_left
+    }
+
     /// Settles into draining or stops, if the moment has come.
     fn settle(&mut self, now: Duration) {
         match self.state {
@@ -180,7 +184,7 @@ impl DcCodes {
         let since_release = (self.handed - self.handed_at_release) as usize;
         let overrun = self.pacer.completed_after(now.saturating_sub(self.settings.pace.latency), since_release);
         self.tally.max_overrun_bytes = self.tally.max_overrun_bytes.max(overrun as u64);
-        if self.source_finished && self.left() > 0 && self.left() == self.trailer_left {
+        if self.is_only_trailer_left() {
             if self.settings.ends_with_stop_word {
                 self.state = State::Lingering { until: now + LINGER };
                 return;
@@ -265,6 +269,13 @@ impl Protocol for DcCodes {
             self.source_finished = true;
             self.text.extend_from_slice(&self.settings.trailer);
             self.trailer_left = self.settings.trailer.len();
+            // Held since the stop word: what looked like a hold may have been the end.
+            if let State::Held { since } = self.state
+                && self.is_only_trailer_left()
+                && self.settings.ends_with_stop_word
+            {
+                self.state = State::Lingering { until: since + LINGER };
+            }
         }
     }
 

@@ -154,11 +154,9 @@ impl Derived {
             root_radius * self.phi.sin(),
             rho - self.tip_radius,
             rho - self.tip_radius - across,
-            rho - r_c.min(rho),
+            r_c - rho,
             flank_end - flank_start,
         ];
-        lengths.remove(5);
-        lengths.push(r_c - rho);
         match root {
             Root::Whole => {
                 lengths.push((self.root_arc_radius - offset) * (FRAC_PI_2 - self.phi));

@@ -124,6 +124,20 @@ fn a_control_that_stops_at_the_stop_word_need_not_take_the_trailer() {
 }
 
 #[test]
+fn a_hold_at_the_stop_word_is_known_for_the_end_once_the_source_is_at_its_end() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"DD\n");
+    m.handle_transmitted(5, MS);
+    m.handle_received(&[0x13], MS);
+    assert_eq!(m.phase(), Phase::Held { since: MS });
+    m.finish();
+    assert_eq!(m.poll_timeout(MS), Some(MS + LINGER));
+    m.handle_received(&[0x11], 2 * MS);
+    assert_eq!(take(&mut m, 2 * MS), b"%\n");
+}
+
+#[test]
 fn a_hold_before_the_trailer_without_a_stop_word_is_a_hold() {
     let mut m = DcCodes::new(Settings { ends_with_stop_word: false, ..settings(Pace::unpaced()) }, Duration::ZERO);
     m.handle_received(&[0x11], MS);
