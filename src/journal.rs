@@ -5,6 +5,8 @@
 //! never less. [`history`] reads a journal back, [`resume`] decides what may follow; both are pure. [`writer`] is the one
 //! thread that writes and syncs.
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
 pub mod history;
 pub mod resume;
 pub mod writer;

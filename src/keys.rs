@@ -114,10 +114,8 @@ impl<'a> Section<'a> {
     /// An error about a key of this section, or about its heading when the key is not there.
     #[must_use]
     pub fn error(&self, key: &str, message: impl Into<String>, help: Option<&str>) -> KeyError {
-        let span = self
-            .table
-            .and_then(|table| table.get(key))
-            .map_or_else(|| self.span.clone(), Spanned::span);
+        let span =
+            self.table.and_then(|table| table.get(key)).map_or_else(|| self.span.clone(), Spanned::span);
         KeyError {
             message: message.into(),
             place: Place::in_text(self.text, span.start, span.end),
@@ -152,9 +150,14 @@ impl<'a> Section<'a> {
     /// # Errors
     ///
     /// When the value is anything else.
-    pub fn whole(&self, key: &'static str, range: std::ops::RangeInclusive<u64>) -> Result<Option<u64>, KeyError> {
+    pub fn whole(
+        &self,
+        key: &'static str,
+        range: std::ops::RangeInclusive<u64>,
+    ) -> Result<Option<u64>, KeyError> {
         let Some(value) = self.get(key) else { return Ok(None) };
-        let number = value.get_ref().as_integer().and_then(|i| u64::from_str_radix(i.as_str(), i.radix()).ok());
+        let number =
+            value.get_ref().as_integer().and_then(|i| u64::from_str_radix(i.as_str(), i.radix()).ok());
         match number {
             Some(number) if range.contains(&number) => Ok(Some(number)),
             _ => Err(self.wrong(key, &format!("a whole number from {} to {}", range.start(), range.end()))),
@@ -186,7 +189,11 @@ impl<'a> Section<'a> {
     /// # Errors
     ///
     /// When the value is not one of the words.
-    pub fn word<T: Copy>(&self, key: &'static str, words: &[(&'static str, T)]) -> Result<Option<T>, KeyError> {
+    pub fn word<T: Copy>(
+        &self,
+        key: &'static str,
+        words: &[(&'static str, T)],
+    ) -> Result<Option<T>, KeyError> {
         let Some(text) = self.text(key)? else { return Ok(None) };
         match words.iter().find(|(word, _)| *word == text) {
             Some((_, value)) => Ok(Some(*value)),

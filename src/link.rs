@@ -50,11 +50,17 @@ impl Port {
     /// With what is wrong with it.
     pub fn parse(text: &str) -> Result<Self, String> {
         match text.split_once("://") {
-            Some(("tcp", address)) if address.rsplit_once(':').is_some_and(|(h, p)| !h.is_empty() && p.parse::<u16>().is_ok()) => {
+            Some(("tcp", address))
+                if address
+                    .rsplit_once(':')
+                    .is_some_and(|(h, p)| !h.is_empty() && p.parse::<u16>().is_ok()) =>
+            {
                 Ok(Self::Tcp(address.to_owned()))
             }
             Some(("tcp", _)) => Err(format!("`{text}` is not tcp://host:port")),
-            Some((scheme, _)) => Err(format!("`{scheme}://` is not a kind of port; a port is a serial device or tcp://host:port")),
+            Some((scheme, _)) => Err(format!(
+                "`{scheme}://` is not a kind of port; a port is a serial device or tcp://host:port"
+            )),
             None if text.is_empty() => Err("a port is a serial device or tcp://host:port".to_owned()),
             None => Ok(Self::Serial(text.to_owned())),
         }
@@ -132,8 +138,12 @@ impl LinkError {
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
-            Self::Missing { .. } => "check the cable and the adapter; on Linux `ls /dev/serial/by-id` shows what is plugged in",
-            Self::Denied { .. } => "on Linux, add yourself to the group `dialout` (sudo usermod -aG dialout $USER) and log in again",
+            Self::Missing { .. } => {
+                "check the cable and the adapter; on Linux `ls /dev/serial/by-id` shows what is plugged in"
+            }
+            Self::Denied { .. } => {
+                "on Linux, add yourself to the group `dialout` (sudo usermod -aG dialout $USER) and log in again"
+            }
             Self::Busy { .. } => "stop the other program first: two senders on one port cut scrap",
             Self::Refused { .. } => "check the address, and that the device server is on and free",
             Self::Settings { .. } => "check baud and framing against the adapter's data sheet",

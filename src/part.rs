@@ -204,10 +204,11 @@ impl Prepared {
     pub fn steps(&self) -> impl Iterator<Item = Step> + Send + use<> {
         let outline = Arc::clone(&self.outline);
         let start = outline.start();
-        let lead_in = self.part.lead_in.point().map(|from| Step {
-            element: Element::Line { start: from, end: start },
-            role: Role::LeadIn,
-        });
+        let lead_in = self
+            .part
+            .lead_in
+            .point()
+            .map(|from| Step { element: Element::Line { start: from, end: start }, role: Role::LeadIn });
         let last = outline.len() - 1;
         let once = move |_| {
             (0..).zip(outline.elements()).map(move |(n, element)| Step {

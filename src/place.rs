@@ -27,7 +27,13 @@ impl Place {
         let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |at| start + at);
         let line = 1 + text[..line_start].bytes().filter(|&b| b == b'\n').count() as u64;
-        Self::in_line(text[line_start..line_end].as_bytes(), line, line_start as u64, start - line_start, end.saturating_sub(start))
+        Self::in_line(
+            &text.as_bytes()[line_start..line_end],
+            line,
+            line_start as u64,
+            start - line_start,
+            end.saturating_sub(start),
+        )
     }
 
     /// The place of `width` bytes at `at` in a line that begins at byte `line_byte` of its source.

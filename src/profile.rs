@@ -129,7 +129,12 @@ impl Profile {
             strict: false,
             overrun_limit: 10,
             window: None,
-            tape: Tape { code: Code::Ascii, end_of_block: b"\n", leader: String::new(), trailer: String::new() },
+            tape: Tape {
+                code: Code::Ascii,
+                end_of_block: b"\n",
+                leader: String::new(),
+                trailer: String::new(),
+            },
             buffer_bytes: 0,
         };
         profile.apply(GENERIC_ISO)?;
@@ -154,7 +159,8 @@ impl Profile {
     /// When there is no such key or the value does not suit it; the place is within `[section] key = value`.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), KeyError> {
         let name = key.rsplit('.').next().unwrap_or(key);
-        let Some((section, _)) = KEYS.iter().find(|(s, k)| *k == name && (key == name || key == format!("{s}.{k}")))
+        let Some((section, _)) =
+            KEYS.iter().find(|(s, k)| *k == name && (key == name || key == format!("{s}.{k}")))
         else {
             let names: Vec<&str> = KEYS.iter().map(|(_, k)| *k).collect();
             return Err(KeyError {
@@ -190,7 +196,9 @@ impl Profile {
         given("framing", framing.is_some());
         if let Some(text) = framing {
             self.framing = Framing::parse(text).ok_or_else(|| {
-                let message = format!("`framing = \"{text}\"` is not data bits 5-8, parity N, E or O, and stop bits 1 or 2");
+                let message = format!(
+                    "`framing = \"{text}\"` is not data bits 5-8, parity N, E or O, and stop bits 1 or 2"
+                );
                 link.error("framing", message, Some("typical is \"7E2\""))
             })?;
         }
@@ -247,7 +255,11 @@ impl Profile {
         }
         if self.tape.code == Code::Iso && self.framing.data_bits < 8 {
             let message = "`code = \"iso\"` makes parity in bit 8, and the framing has no bit 8";
-            return Err(tape.error("code", message, Some("use code = \"ascii\" with 7E2, or framing = \"8N2\" with \"iso\"")));
+            return Err(tape.error(
+                "code",
+                message,
+                Some("use code = \"ascii\" with 7E2, or framing = \"8N2\" with \"iso\""),
+            ));
         }
         if self.framing.data_bits < 7 {
             let message = "3B needs seven data bits or more";
@@ -277,7 +289,11 @@ fn latency(link: &Section<'_>) -> Result<Option<Option<Duration>>, KeyError> {
     if let Ok(Some(word)) = link.text("receive_latency_ms") {
         return match word {
             "auto" => Ok(Some(None)),
-            _ => Err(link.error("receive_latency_ms", "`receive_latency_ms` must be milliseconds or \"auto\"", None)),
+            _ => Err(link.error(
+                "receive_latency_ms",
+                "`receive_latency_ms` must be milliseconds or \"auto\"",
+                None,
+            )),
         };
     }
     match link.number("receive_latency_ms")? {

@@ -7,6 +7,8 @@
 //!
 //! Only [`dc_codes`] is here yet. Clocks, ports and threads are not here at all.
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
 pub mod dc_codes;
 pub mod pacing;
 

@@ -53,7 +53,9 @@ impl Tape {
                 line.extend_from_slice(text);
                 line.extend_from_slice(self.end_of_block);
             }
-            Code::Iso => line.extend(text.iter().chain(self.end_of_block).map(|&byte| with_even_parity(byte))),
+            Code::Iso => {
+                line.extend(text.iter().chain(self.end_of_block).map(|&byte| with_even_parity(byte)))
+            }
         }
         Ok(())
     }

@@ -34,7 +34,11 @@ fn free_running_keeps_the_ten_character_rule_and_the_line_busy() {
     for (baud, latency) in cases {
         let Run { report, holds_seen, ending, .. } = run(&at(baud, latency));
         let utilisation = report.line_utilisation.expect("the line is paced");
-        println!("{baud} baud, {latency:?}: {} after DC3, {:.2} % busy", report.max_overrun_bytes, 100.0 * utilisation);
+        println!(
+            "{baud} baud, {latency:?}: {} after DC3, {:.2} % busy",
+            report.max_overrun_bytes,
+            100.0 * utilisation
+        );
         assert_eq!(ending, Ending::Done { trailer_unsent: 0 });
         assert!(holds_seen >= 5, "{baud} baud, {latency:?}: only {holds_seen} holds");
         assert!(report.max_overrun_bytes <= 10, "{baud} baud, {latency:?}: {}", report.max_overrun_bytes);
@@ -53,7 +57,11 @@ fn strict_pacing_keeps_the_rule_where_the_latency_alone_would_break_it() {
 
     let strict = run(&Setup { strict: true, ..setup });
     let utilisation = strict.report.line_utilisation.expect("the line is paced");
-    println!("9600 baud, 16 ms, strict: {} after DC3, {:.2} % busy", strict.report.max_overrun_bytes, 100.0 * utilisation);
+    println!(
+        "9600 baud, 16 ms, strict: {} after DC3, {:.2} % busy",
+        strict.report.max_overrun_bytes,
+        100.0 * utilisation
+    );
     assert_eq!(strict.report.alarm, None);
     assert!(strict.report.max_overrun_bytes <= 10);
     assert!(utilisation >= 0.55, "{utilisation}");
@@ -117,9 +125,17 @@ fn no_more_is_made_than_the_window_and_one_block_ahead_of_what_was_read() {
 #[test]
 fn an_alarm_or_reset_of_the_control_is_final_and_named() {
     let alarmed = run(&Setup { alarm_at_block: Some(40), ..Setup::default() });
-    assert!(matches!(alarmed.ending, Ending::Failed { failure: Failure::ControlAlarm, .. }), "{:?}", alarmed.ending);
+    assert!(
+        matches!(alarmed.ending, Ending::Failed { failure: Failure::ControlAlarm, .. }),
+        "{:?}",
+        alarmed.ending
+    );
     let reset = run(&Setup { reset_at_block: Some(40), ..Setup::default() });
-    assert!(matches!(reset.ending, Ending::Failed { failure: Failure::ControlReset, .. }), "{:?}", reset.ending);
+    assert!(
+        matches!(reset.ending, Ending::Failed { failure: Failure::ControlReset, .. }),
+        "{:?}",
+        reset.ending
+    );
     assert!(reset.report.blocks < 45);
 }
 

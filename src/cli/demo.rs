@@ -57,7 +57,8 @@ const ALLOWED_DELAY: std::time::Duration = std::time::Duration::from_millis(8);
 
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let directory = options.keep.clone().unwrap_or_else(|| std::env::temp_dir().join("dripfeed-demo"));
-    let unusable = |error| Failure::new(Exit::Ours, format!("cannot write to {}: {error}", directory.display()));
+    let unusable =
+        |error| Failure::new(Exit::Ours, format!("cannot write to {}: {error}", directory.display()));
     std::fs::create_dir_all(&directory).map_err(unusable)?;
 
     let prepared = Part::default().prepare().map_err(|error| Failure::gear(&error))?;
@@ -110,13 +111,16 @@ fn feed(prepared: &Prepared, directory: &Path) -> Result<(Report, Watch, f64), F
         let (control_stop, watch) = (Arc::clone(&stop), &mut watch);
         let control = std::thread::Builder::new()
             .name("control".to_owned())
-            .spawn_scoped(scope, move || mock_controller::shell::serve_tcp(listener, settings, watch, control_stop))
+            .spawn_scoped(scope, move || {
+                mock_controller::shell::serve_tcp(listener, settings, watch, control_stop)
+            })
             .map_err(ours)?;
         let outcome = send(prepared, &address.to_string(), directory);
         if outcome.is_err() {
             stop.store(true, Ordering::Relaxed);
         }
-        let report = control.join().map_err(|_| Failure::new(Exit::Ours, "the control's thread broke off"))?;
+        let report =
+            control.join().map_err(|_| Failure::new(Exit::Ours, "the control's thread broke off"))?;
         Ok((report.map_err(ours)?, outcome?))
     })?;
     let seconds = outcome.last.now.as_secs_f64();
@@ -131,7 +135,8 @@ fn feed(prepared: &Prepared, directory: &Path) -> Result<(Report, Watch, f64), F
 
 fn send(prepared: &Prepared, address: &str, directory: &Path) -> Result<crate::link::feed::Outcome, Failure> {
     let source = Source::of_part("gear", prepared.clone());
-    let mut profile = Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?;
+    let mut profile =
+        Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?;
     profile.baud = BAUD;
     profile.receive_latency = Some(ALLOWED_DELAY);
     let line = LineOptions { baud: Some(BAUD), ..LineOptions::default() };
@@ -238,7 +243,8 @@ fn compare(prepared: &Prepared, watch: &Watch, report: Report) -> Verdict {
 
 fn words(verdict: &Verdict) -> String {
     let Verdict { report, max_node_error_um, closure_um, seconds } = verdict;
-    let utilisation = report.line_utilisation.map_or_else(|| "not known".to_owned(), |u| format!("{:.1} %", 100.0 * u));
+    let utilisation =
+        report.line_utilisation.map_or_else(|| "not known".to_owned(), |u| format!("{:.1} %", 100.0 * u));
     format!(
         "The control cut {} blocks, {:.3} mm of path, in {seconds:.0} s at {BAUD} baud.\n\
          The farthest a node lies from theory is {max_node_error_um:.2} µm; the outline closes to {closure_um:.2} µm.\n\
@@ -254,7 +260,10 @@ fn judge(verdict: &Verdict) -> Result<(), Failure> {
         return Err(Failure::new(Exit::Control, format!("the control raised the alarm {alarm}")));
     }
     if verdict.max_node_error_um > 1.5 || verdict.closure_um > 1.5 {
-        return Err(Failure::new(Exit::Ours, "the cut is not what it should be: a node or the closure is more than 1.5 µm off"));
+        return Err(Failure::new(
+            Exit::Ours,
+            "the cut is not what it should be: a node or the closure is more than 1.5 µm off",
+        ));
     }
     Ok(())
 }

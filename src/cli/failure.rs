@@ -5,8 +5,8 @@ use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use miette::{
-    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, SourceCode,
-    SourceSpan, SpanContents,
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents,
+    SourceCode, SourceSpan, SpanContents,
 };
 
 use crate::formats::three_b::read::ReadError;
@@ -91,7 +91,9 @@ impl Failure {
     pub(super) fn read(file: &str, error: ReadError) -> Self {
         match error {
             ReadError::Io(error) => Self::new(Exit::Program, format!("{file}: {error}")),
-            ReadError::Program { message, place, help } => Self::new(Exit::Program, message).at(file, place).help(help),
+            ReadError::Program { message, place, help } => {
+                Self::new(Exit::Program, message).at(file, place).help(help)
+            }
         }
     }
 
@@ -105,9 +107,15 @@ impl Failure {
 
     pub(super) fn journal(error: &JournalError) -> Self {
         let help = match error {
-            JournalError::Io { .. } => "nothing was sent; make room or name another directory with --journal DIR",
-            JournalError::InUse { .. } => "wait for the other dripfeed to end, or look at it with `dripfeed jobs`",
-            JournalError::Unreadable { .. } => "start the job again with `dripfeed send`; the journal is left as it is",
+            JournalError::Io { .. } => {
+                "nothing was sent; make room or name another directory with --journal DIR"
+            }
+            JournalError::InUse { .. } => {
+                "wait for the other dripfeed to end, or look at it with `dripfeed jobs`"
+            }
+            JournalError::Unreadable { .. } => {
+                "start the job again with `dripfeed send`; the journal is left as it is"
+            }
         };
         Self::new(Exit::Ours, error.to_string()).help(help)
     }
@@ -122,7 +130,11 @@ impl Failure {
     }
 
     fn render(&self) -> String {
-        let mut theme = if io::stderr().is_terminal() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+        let mut theme = if io::stderr().is_terminal() {
+            GraphicalTheme::unicode()
+        } else {
+            GraphicalTheme::unicode_nocolor()
+        };
         theme.characters.error = "error:".to_owned();
         let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false).with_context_lines(0);
         let mut text = String::new();

@@ -65,7 +65,9 @@ impl LineOptions {
         for word in words {
             match word.split_once('=') {
                 Some(("protocol", value)) => self.protocol = self.protocol.or_else(|| Some(value.to_owned())),
-                Some(("baud", value)) if !self.unpaced => self.baud = self.baud.or_else(|| value.parse().ok()),
+                Some(("baud", value)) if !self.unpaced => {
+                    self.baud = self.baud.or_else(|| value.parse().ok())
+                }
                 Some(("framing", value)) => self.framing = self.framing.or_else(|| Some(value.to_owned())),
                 _ if word == "unpaced" => self.unpaced |= self.baud.is_none(),
                 _ => set.extend(word.strip_prefix("set ").map(str::to_owned)),
@@ -92,15 +94,19 @@ pub(super) fn profile(machine: Option<&str>, line: &LineOptions) -> Result<Profi
     }
     if let Some(framing) = &line.framing {
         if Framing::parse(framing).is_none() {
-            return Err(Failure::new(Exit::Usage, format!("--framing {framing} is not data bits 5-8, parity N, E or O, and stop bits 1 or 2"))
-                .help("typical is --framing 7E2"));
+            return Err(Failure::new(
+                Exit::Usage,
+                format!("--framing {framing} is not data bits 5-8, parity N, E or O, and stop bits 1 or 2"),
+            )
+            .help("typical is --framing 7E2"));
         }
         set(&mut profile, "framing", framing, "--framing")?;
     }
     for pair in &line.set {
         let Some((key, value)) = pair.split_once('=') else {
-            return Err(Failure::new(Exit::Usage, format!("--set {pair} is not KEY=VALUE"))
-                .help("for example --set pacing=strict; `dripfeed machines show generic-iso` lists the keys"));
+            return Err(Failure::new(Exit::Usage, format!("--set {pair} is not KEY=VALUE")).help(
+                "for example --set pacing=strict; `dripfeed machines show generic-iso` lists the keys",
+            ));
         };
         set(&mut profile, key.trim(), value.trim(), "--set")?;
     }
@@ -132,13 +138,19 @@ impl Connection {
         let own = OWN_DELAY.min(2 * profile.framing.character(profile.baud));
         let (paced, latency, source) = match (&port, profile.receive_latency) {
             (Port::Tcp(_), given) => {
-                let source = if given.is_some() { "from the profile" } else { "for this system's own delays; the network's is not known" };
+                let source = if given.is_some() {
+                    "from the profile"
+                } else {
+                    "for this system's own delays; the network's is not known"
+                };
                 (options.baud.is_some() && !options.unpaced, given.unwrap_or(own), source)
             }
             (Port::Serial(_), Some(latency)) => (!options.unpaced, latency, "from the profile"),
             (Port::Serial(device), None) => match Latency::of(device) {
                 Latency::Nothing => (!options.unpaced, own, "for this system's own delays"),
-                Latency::Adapter(latency) => (!options.unpaced, latency, "the adapter's latency timer and 1 ms"),
+                Latency::Adapter(latency) => {
+                    (!options.unpaced, latency, "the adapter's latency timer and 1 ms")
+                }
                 Latency::Assumed(latency) => {
                     (!options.unpaced, latency, "ASSUMED: the adapter does not say; set receive_latency_ms")
                 }
@@ -153,7 +165,10 @@ impl Connection {
     fn say(&self, latency_source: &str) {
         let Profile { baud, framing, overrun_limit, .. } = self.profile;
         let Some(_) = self.pace.character else {
-            eprintln!("{}: not paced; bytes under way when the control says stop cannot be recalled", self.port);
+            eprintln!(
+                "{}: not paced; bytes under way when the control says stop cannot be recalled",
+                self.port
+            );
             return;
         };
         let worst = self.pace.worst_overrun();
@@ -288,7 +303,9 @@ impl Feeding<'_> {
         let flags = signals()?;
         let program = self.source.program()?;
         let tape = self.line.profile.tape.clone();
-        let encode = |line: Result<Vec<u8>, _>| line.map_err(|error: crate::tape::Unencodable| Failure::new(Exit::Profile, error.to_string()));
+        let encode = |line: Result<Vec<u8>, _>| {
+            line.map_err(|error: crate::tape::Unencodable| Failure::new(Exit::Profile, error.to_string()))
+        };
         let settings = Settings {
             pace: self.line.pace,
             wait_for_start: self.line.profile.wait_for_start,
@@ -353,8 +370,9 @@ impl Feeding<'_> {
         let journal_error = journal.close();
         if let Some(path) = &self.report {
             let report = report(&outcome, self.from_block, self.line.pace.character);
-            std::fs::write(path, format!("{report}\n"))
-                .map_err(|error| Failure::new(Exit::Ours, format!("cannot write {}: {error}", path.display())))?;
+            std::fs::write(path, format!("{report}\n")).map_err(|error| {
+                Failure::new(Exit::Ours, format!("cannot write {}: {error}", path.display()))
+            })?;
         }
         if let Some(error) = journal_error {
             eprintln!("warning: resume is not guaranteed: the journal could not be written ({error})");
@@ -455,24 +473,27 @@ pub(super) fn conclude(outcome: Outcome, job: &str, resume: &str, source: &str) 
                 failure
             }
             SourceFault::Tape(error) => Failure::new(Exit::Program, format!("{place}: {error}")),
-            SourceFault::ProducerDied => Failure::new(Exit::Ours, format!("{place}: its maker stopped without a word")),
+            SourceFault::ProducerDied => {
+                Failure::new(Exit::Ours, format!("{place}: its maker stopped without a word"))
+            }
         };
         return Err(failure.resume_with(next));
     }
     match outcome.ending {
         Ending::Done { trailer_unsent } => {
             if trailer_unsent > 0 {
-                eprintln!("the control stopped reading at the stop word; {trailer_unsent} bytes of trailer were not wanted");
+                eprintln!(
+                    "the control stopped reading at the stop word; {trailer_unsent} bytes of trailer were not wanted"
+                );
             }
             eprintln!("done: job {job}, {block} blocks");
             Ok(())
         }
-        Ending::Stopped { torn } => Err(Failure::new(
-            Exit::Stopped,
-            format!("stopped by the operator: {after}{}", torn_words(torn)),
-        )
-        .help("the control's own screen says which block it executed last; name the one after it")
-        .resume_with(next)),
+        Ending::Stopped { torn } => {
+            Err(Failure::new(Exit::Stopped, format!("stopped by the operator: {after}{}", torn_words(torn)))
+                .help("the control's own screen says which block it executed last; name the one after it")
+                .resume_with(next))
+        }
         Ending::Failed { failure, torn } => {
             let what = match (failure, &outcome.link_error) {
                 (protocol::Failure::LinkLost, Some(error)) => error.to_string(),
@@ -483,15 +504,22 @@ pub(super) fn conclude(outcome: Outcome, job: &str, resume: &str, source: &str) 
                 protocol::Failure::LinkLost | protocol::Failure::NeverStarted(_) => Exit::Link,
             };
             let help = match failure {
-                protocol::Failure::NeverStarted(_) => "start reading at the control; if it asked before this job was armed, use --set start=at-once",
-                protocol::Failure::ControlReset | protocol::Failure::ControlAlarm => "clear the alarm at the control, and read there which block it executed last",
-                protocol::Failure::LinkLost => "mend the link; the control's own screen says which block it executed last: name the one after it",
+                protocol::Failure::NeverStarted(_) => {
+                    "start reading at the control; if it asked before this job was armed, use --set start=at-once"
+                }
+                protocol::Failure::ControlReset | protocol::Failure::ControlAlarm => {
+                    "clear the alarm at the control, and read there which block it executed last"
+                }
+                protocol::Failure::LinkLost => {
+                    "mend the link; the control's own screen says which block it executed last: name the one after it"
+                }
             };
-            Err(Failure::new(exit, format!("{what}: {after}{}", torn_words(torn))).help(help).resume_with(next))
+            Err(Failure::new(exit, format!("{what}: {after}{}", torn_words(torn)))
+                .help(help)
+                .resume_with(next))
         }
     }
 }
-
 
 /// How late this process may be to hear the control, where the link itself adds nothing. A guess.
 const OWN_DELAY: Duration = Duration::from_millis(3);

@@ -98,7 +98,9 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     } else {
         if let Some(option) = options.gear.first_given() {
             let message = format!("--{option} goes with `generate gear`; a part file states its own values");
-            return Err(Failure::new(Exit::Usage, message).help(format!("change {what}, or leave the option out")));
+            return Err(
+                Failure::new(Exit::Usage, message).help(format!("change {what}, or leave the option out"))
+            );
         }
         source::part_file(&what)?.part
     };
@@ -133,8 +135,10 @@ impl Gear {
         }
         // The words were checked against the same tables.
         let word = |given: &Option<String>, name: &str| given.as_deref() == Some(name);
-        part.direction = DIRECTIONS.iter().find(|(w, _)| word(&self.direction, w)).map_or(part.direction, |d| d.1);
-        part.rounding = ROUNDINGS.iter().find(|(w, _)| word(&self.rounding, w)).map_or(part.rounding, |r| r.1);
+        part.direction =
+            DIRECTIONS.iter().find(|(w, _)| word(&self.direction, w)).map_or(part.direction, |d| d.1);
+        part.rounding =
+            ROUNDINGS.iter().find(|(w, _)| word(&self.rounding, w)).map_or(part.rounding, |r| r.1);
         part.stop_word = STOP_WORDS.iter().find(|(w, _)| word(&self.end, w)).map_or(part.stop_word, |s| s.1);
         part.aim = self.interpolator.as_deref().and_then(aim_named).unwrap_or(part.aim);
         part.lead_in = match self.lead_in.as_deref() {

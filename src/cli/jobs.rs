@@ -42,7 +42,8 @@ pub(super) fn directory(given: Option<&Path>) -> Result<PathBuf, Failure> {
             .map(|state| state.join("dripfeed"))
     };
     given.map(Path::to_owned).or_else(state).ok_or_else(|| {
-        Failure::new(Exit::Usage, "there is no home directory to keep journals in").help("name one with --journal DIR")
+        Failure::new(Exit::Usage, "there is no home directory to keep journals in")
+            .help("name one with --journal DIR")
     })
 }
 
@@ -102,7 +103,10 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         let mut text = String::new();
         for history in &histories {
             let state = state(&directory, history);
-            text.push_str(&format!("{:32} {state:10} block {:>8}  {}\n", history.job.job, history.sent, history.job.source));
+            text.push_str(&format!(
+                "{:32} {state:10} block {:>8}  {}\n",
+                history.job.job, history.sent, history.job.source
+            ));
         }
         return print(text.as_bytes());
     };
@@ -118,8 +122,11 @@ pub(super) fn find(directory: &Path, job: Option<&str>) -> Result<History, Failu
     if let Some(job) = job {
         let path = writer::path_of(directory, job);
         if !path.exists() {
-            return Err(Failure::new(Exit::Usage, format!("there is no job {job} in {}", directory.display()))
-                .help("`dripfeed jobs` lists them"));
+            return Err(Failure::new(
+                Exit::Usage,
+                format!("there is no job {job} in {}", directory.display()),
+            )
+            .help("`dripfeed jobs` lists them"));
         }
         return writer::read(&path).map_err(|error| Failure::journal(&error));
     }
@@ -144,7 +151,11 @@ fn describe(directory: &Path, history: &History) -> String {
     if let Some(ended) = &history.ended {
         text.push_str(&format!("ended       {}: {}\n", ended.at, ended.reason));
         if ended.torn_bytes > 0 {
-            text.push_str(&format!("torn        block {}, {} bytes of it sent\n", ended.block + 1, ended.torn_bytes));
+            text.push_str(&format!(
+                "torn        block {}, {} bytes of it sent\n",
+                ended.block + 1,
+                ended.torn_bytes
+            ));
         }
     }
     text.push_str(&format!(

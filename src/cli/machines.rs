@@ -64,7 +64,8 @@ fn list(json: bool) -> Result<(), Failure> {
     }
     let mut lines = String::new();
     for profile in profiles {
-        lines.push_str(&format!("{:16} dc-codes, {} baud, {}\n", profile.name, profile.baud, profile.framing));
+        lines
+            .push_str(&format!("{:16} dc-codes, {} baud, {}\n", profile.name, profile.baud, profile.framing));
     }
     lines.push_str("`dripfeed machines show NAME` prints one with the source of every value\n");
     print(lines.as_bytes())
@@ -88,8 +89,11 @@ fn text(name: &str) -> Result<String, Failure> {
     }
     std::fs::read_to_string(name).map_err(|error| {
         let known: Vec<&str> = BUILT_IN.iter().map(|(name, _)| *name).collect();
-        Failure::new(Exit::Profile, format!("{name} is neither a built-in profile nor a readable file: {error}"))
-            .help(format!("built in: {}", known.join(", ")))
+        Failure::new(
+            Exit::Profile,
+            format!("{name} is neither a built-in profile nor a readable file: {error}"),
+        )
+        .help(format!("built in: {}", known.join(", ")))
     })
 }
 

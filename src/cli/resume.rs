@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Feeding, LineOptions, Connection};
+use super::feeding::{self, Connection, Feeding, LineOptions};
 use super::jobs;
 use super::send::quoted;
 use super::source::{Kind, Source};
@@ -71,18 +71,29 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     let job = history.job.clone();
     let word = options.source.as_deref().unwrap_or(&job.source);
     if word == "-" {
-        return Err(Failure::new(Exit::Usage, "the job came from standard input, which cannot be read again")
-            .help("name the program with --source FILE"));
+        return Err(Failure::new(
+            Exit::Usage,
+            "the job came from standard input, which cannot be read again",
+        )
+        .help("name the program with --source FILE"));
     }
     let source = Source::open(word, Kind::named(&job.kind))?;
     if source.is_stream() {
-        return Err(Failure::new(Exit::Usage, format!("{word} can be read only once; name a file with --source")));
+        return Err(Failure::new(
+            Exit::Usage,
+            format!("{word} can be read only once; name a file with --source"),
+        ));
     }
     let line = options.line.clone().or(&job.settings);
     let profile = feeding::profile(Some(&job.machine), &line)?;
     if options.line.words().is_empty() && feeding::profile_digest(&profile) != job.machine_digest {
-        return Err(Failure::new(Exit::Profile, format!("the machine profile {} has changed since the job was sent", job.machine))
-            .help("give the changed values on the command line (--baud, --framing, --set), so that they are meant"));
+        return Err(Failure::new(
+            Exit::Profile,
+            format!("the machine profile {} has changed since the job was sent", job.machine),
+        )
+        .help(
+            "give the changed values on the command line (--baud, --framing, --set), so that they are meant",
+        ));
     }
 
     let program = source.compare(&history.segments)?;
@@ -92,7 +103,10 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     let mut decision = decide(&history, &program, answer, discards_partial);
     if let Err(Refusal::AskBlock { .. }) = decision {
         let text = feeding::answer("The block after the last one that the control executed: ")?;
-        let block = text.trim().parse().map_err(|_| Failure::new(Exit::Usage, format!("`{}` is not a block number", text.trim())))?;
+        let block = text
+            .trim()
+            .parse()
+            .map_err(|_| Failure::new(Exit::Usage, format!("`{}` is not a block number", text.trim())))?;
         answer.from_block = Some(block);
         decision = decide(&history, &program, answer, discards_partial);
     }
@@ -115,20 +129,41 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     let (file, _) = writer::reopen(&directory, &job.job).map_err(|error| Failure::journal(&error))?;
     let writer = Writer::start().map_err(|error| Failure::new(Exit::Ours, error.to_string()))?;
     let journal = writer.attach(Box::new(file), from_block - 1);
-    journal.note(Record::Resumed { block: from_block, at: feeding::time_of_day(), port: connection.port.to_string() });
+    journal.note(Record::Resumed {
+        block: from_block,
+        at: feeding::time_of_day(),
+        port: connection.port.to_string(),
+    });
     let mut resume = format!("dripfeed resume {}", job.job);
     if options.journal.is_some() {
         resume.push_str(&format!(" --journal {}", quoted(&directory.display().to_string())));
     }
-    Feeding { source: &source, line: connection, link, journal, job: job.job, from_block, report: options.report, resume }.run()
+    Feeding {
+        source: &source,
+        line: connection,
+        link,
+        journal,
+        job: job.job,
+        from_block,
+        report: options.report,
+        resume,
+    }
+    .run()
 }
 
 fn refused(refusal: &Refusal) -> Failure {
     let (exit, help) = match refusal {
-        Refusal::Changed { .. } => (Exit::Program, "put the old source back, name it with --source, or start anew with `dripfeed send`"),
+        Refusal::Changed { .. } => (
+            Exit::Program,
+            "put the old source back, name it with --source, or start anew with `dripfeed send`",
+        ),
         Refusal::NoSuchBlock { .. } => (Exit::Usage, "blocks count from 1 as sent, the lead-in is block 1"),
-        Refusal::WouldSkip { .. } => (Exit::Usage, "name the block after the last one that the control executed"),
-        Refusal::Done { .. } => (Exit::Usage, "send it again with `dripfeed send`, or part of it with --from-block N"),
+        Refusal::WouldSkip { .. } => {
+            (Exit::Usage, "name the block after the last one that the control executed")
+        }
+        Refusal::Done { .. } => {
+            (Exit::Usage, "send it again with `dripfeed send`, or part of it with --from-block N")
+        }
         Refusal::AskBlock { .. } => (Exit::Usage, "name it with --from-block N"),
         Refusal::MayBeTorn => (Exit::Usage, "reset or clear the control, then say so with --control-cleared"),
     };
@@ -175,7 +210,9 @@ fn spot(source: &Source, from_block: u64, blocks: u64) -> Result<String, Failure
         };
         block += 1;
         if block < from_block {
-            stands += model.displacement(&made).map_err(|fault| Failure::new(Exit::Program, format!("block {block}: {fault}")))?;
+            stands += model
+                .displacement(&made)
+                .map_err(|fault| Failure::new(Exit::Program, format!("block {block}: {fault}")))?;
         }
         if block >= first_shown {
             let mark = if block == from_block { '>' } else { ' ' };

@@ -99,9 +99,13 @@ impl Screen {
 
 /// The state of the line in words.
 fn state_words(snapshot: &Snapshot, with_time: bool) -> String {
-    let since = |from: Duration| if with_time { format!(" for {}", clock(snapshot.now.saturating_sub(from))) } else { String::new() };
+    let since = |from: Duration| {
+        if with_time { format!(" for {}", clock(snapshot.now.saturating_sub(from))) } else { String::new() }
+    };
     let mut words = match snapshot.phase {
-        Phase::AwaitingStart { since: from } => format!("waiting for the control to ask (DC1){}", since(from)),
+        Phase::AwaitingStart { since: from } => {
+            format!("waiting for the control to ask (DC1){}", since(from))
+        }
         Phase::Feeding => "feeding".to_owned(),
         Phase::Held { since: from } => format!("held by the control{}", since(from)),
         Phase::Draining => "the last bytes are on the line".to_owned(),

@@ -14,11 +14,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Feeding, LineOptions, Connection};
-use super::source::{Kind, Source};
+use super::feeding::{self, Connection, Feeding, LineOptions};
 use super::jobs;
-use crate::journal::writer::{self, Writer};
+use super::source::{Kind, Source};
 use crate::journal::Job;
+use crate::journal::writer::{self, Writer};
 use crate::link::Port;
 use crate::part::Warning;
 
@@ -65,7 +65,10 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     if let Some(size) = source.size
         && from_block > size.blocks
     {
-        return Err(Failure::new(Exit::Usage, format!("block {from_block} does not exist: the program has {} blocks", size.blocks)));
+        return Err(Failure::new(
+            Exit::Usage,
+            format!("block {from_block} does not exist: the program has {} blocks", size.blocks),
+        ));
     }
     if options.dry_run {
         return feeding::dry_run(&source, from_block);
@@ -112,7 +115,17 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     }
     eprintln!("job {}", job.job);
     let journal = writer.attach(Box::new(file), from_block - 1);
-    Feeding { source: &source, line: connection, link, journal, job: job.job, from_block, report: options.report, resume }.run()
+    Feeding {
+        source: &source,
+        line: connection,
+        link,
+        journal,
+        job: job.job,
+        from_block,
+        report: options.report,
+        resume,
+    }
+    .run()
 }
 
 /// Creates the journal under the first free name: source, time, and a number if need be.
@@ -149,5 +162,9 @@ fn absolute_if_file(machine: &str) -> String {
 /// A word for a shell.
 pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+:@%,".contains(c);
-    if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }

@@ -107,9 +107,13 @@ impl Source {
         if word == "-" {
             return match from {
                 Some(Kind::ThreeB) => Ok(Self::stream(word)),
-                Some(Kind::Part) => Err(Failure::new(Exit::Usage, "a part file is read from a file, not from standard input")),
-                None => Err(Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
-                    .help("for example `--from 3b`")),
+                Some(Kind::Part) => {
+                    Err(Failure::new(Exit::Usage, "a part file is read from a file, not from standard input"))
+                }
+                None => {
+                    Err(Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
+                        .help("for example `--from 3b`"))
+                }
             };
         }
         let metadata = std::fs::metadata(word).map_err(|error| unreadable(word, &error))?;
@@ -119,8 +123,11 @@ impl Source {
         let kind = match from.or_else(|| kind_of(word)) {
             Some(kind) => kind,
             None => {
-                return Err(Failure::new(Exit::Usage, format!("what {word} is cannot be told from its name"))
-                    .help("name a .3b program or a .toml part file, or say --from 3b or --from part"));
+                return Err(Failure::new(
+                    Exit::Usage,
+                    format!("what {word} is cannot be told from its name"),
+                )
+                .help("name a .3b program or a .toml part file, or say --from 3b or --from part"));
             }
         };
         let path = std::path::absolute(word).map_err(|error| unreadable(word, &error))?;
@@ -146,12 +153,21 @@ impl Source {
 
     fn stream(path: &str) -> Self {
         let path = path.to_owned();
-        Self { path, kind: Kind::ThreeB, digest: String::new(), size: None, ends_with_stop_word: false, body: Body::Stream }
+        Self {
+            path,
+            kind: Kind::ThreeB,
+            digest: String::new(),
+            size: None,
+            ends_with_stop_word: false,
+            body: Body::Stream,
+        }
     }
 
     fn part(word: &str, path: &Path) -> Result<Self, Failure> {
         let file = part_file(word)?;
-        let digest = std::fs::read(path).map(|bytes| blake3::hash(&bytes)).map_err(|error| unreadable(word, &error))?;
+        let digest = std::fs::read(path)
+            .map(|bytes| blake3::hash(&bytes))
+            .map_err(|error| unreadable(word, &error))?;
         let prepared = file.part.prepare().map_err(|error| Failure::gear(&error))?;
         Ok(Self {
             path: path.display().to_string(),
@@ -187,7 +203,8 @@ impl Source {
             return Err(Failure::new(Exit::Program, format!("{word} holds no block")));
         }
         let digest = hashing.hasher.finalize();
-        let stamp = Stamp { path: path.clone(), bytes: hashing.bytes, modified: metadata.modified().ok(), digest };
+        let stamp =
+            Stamp { path: path.clone(), bytes: hashing.bytes, modified: metadata.modified().ok(), digest };
         Ok(Self {
             path: path.display().to_string(),
             kind: Kind::ThreeB,
@@ -216,7 +233,8 @@ impl Source {
         Ok(match &self.body {
             Body::Part(prepared) => Box::new(Generated::new(prepared)),
             Body::File(stamp) => {
-                let verified = Verified::open(stamp.clone()).map_err(|error| unreadable(&self.path, &error))?;
+                let verified =
+                    Verified::open(stamp.clone()).map_err(|error| unreadable(&self.path, &error))?;
                 Box::new(program::Read::new(BufReader::with_capacity(READ_BUFFER, verified)))
             }
             Body::Stream if self.path == "-" => Box::new(program::Read::new(BufReader::new(io::stdin()))),
@@ -228,7 +246,10 @@ impl Source {
     }
 
     /// Makes the whole program once to compare it with a journal: its blocks, and the first segment that differs.
-    pub(super) fn compare(&self, recorded: &[(u64, String)]) -> Result<crate::journal::resume::Program, Failure> {
+    pub(super) fn compare(
+        &self,
+        recorded: &[(u64, String)],
+    ) -> Result<crate::journal::resume::Program, Failure> {
         let mut program = self.program()?;
         let (mut segments, mut text, mut blocks) = (Segments::default(), Vec::new(), 0);
         let mut differs_at = None;

@@ -124,7 +124,13 @@ impl Block {
     /// The arc that starts at `start` (seen from the centre) and counts `j` along `g`.
     #[must_use]
     pub fn arc(start: Position, sense: Sense, g: Axis, j: Micrometres) -> Self {
-        Self { x: start.x.abs(), y: start.y.abs(), j, g, motion: Motion::Arc(sense, arc_quadrant(start, sense)) }
+        Self {
+            x: start.x.abs(),
+            y: start.y.abs(),
+            j,
+            g,
+            motion: Motion::Arc(sense, arc_quadrant(start, sense)),
+        }
     }
 
     /// X and Y with the signs of the digit: the end of a line, the start of an arc.

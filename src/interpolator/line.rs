@@ -20,7 +20,9 @@ pub(super) fn displacement(model: Model, block: &Block, quadrant: Quadrant) -> R
     };
     let other = match model {
         Model::Exact => exact(counted, across, j, lead == block.g)?,
-        Model::Rotated | Model::Mirrored | Model::Strict if lead == block.g => other_steps(counted, across, j)?,
+        Model::Rotated | Model::Mirrored | Model::Strict if lead == block.g => {
+            other_steps(counted, across, j)?
+        }
         Model::Rotated | Model::Mirrored | Model::Strict => lead_steps(across, counted, j)?,
     };
     let (sx, sy) = quadrant.signs();

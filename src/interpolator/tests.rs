@@ -13,15 +13,18 @@ fn step(model: Model, block: &Block) -> Result<Position, Fault> {
     };
     if let Motion::Line(quadrant) = block.motion {
         let (mut x, mut y, mut f) = (0, 0, 0i64);
-        let x_leads =
-            model == Model::Mirrored || quadrant == Quadrant::First || quadrant == Quadrant::Third;
+        let x_leads = model == Model::Mirrored || quadrant == Quadrant::First || quadrant == Quadrant::Third;
         let (a, b) = if x_leads { (block.x.0, block.y.0) } else { (block.y.0, block.x.0) };
         let mut idle = 0;
         while left > 0 {
             let lead = f >= 0;
             f += if lead { -b } else { a };
             let on_x = lead == x_leads;
-            if on_x { x += sx } else { y += sy }
+            if on_x {
+                x += sx
+            } else {
+                y += sy
+            }
             if on_x == (block.g == Axis::X) {
                 left -= 1;
                 idle = 0;
@@ -40,14 +43,62 @@ fn step(model: Model, block: &Block) -> Result<Position, Fault> {
     while left > 0 {
         let inward = if model == Model::Strict { f > 0 } else { f >= 0 };
         let (on_x, s) = match sense {
-            Sense::CounterClockwise if x > 0 && y >= 0 => if inward { (true, -1) } else { (false, 1) },
-            Sense::CounterClockwise if x <= 0 && y > 0 => if inward { (false, -1) } else { (true, -1) },
-            Sense::CounterClockwise if x < 0 && y <= 0 => if inward { (true, 1) } else { (false, -1) },
-            Sense::CounterClockwise if x >= 0 && y < 0 => if inward { (false, 1) } else { (true, 1) },
-            Sense::Clockwise if x >= 0 && y > 0 => if inward { (false, -1) } else { (true, 1) },
-            Sense::Clockwise if x > 0 && y <= 0 => if inward { (true, -1) } else { (false, -1) },
-            Sense::Clockwise if x <= 0 && y < 0 => if inward { (false, 1) } else { (true, -1) },
-            Sense::Clockwise if x < 0 && y >= 0 => if inward { (true, 1) } else { (false, 1) },
+            Sense::CounterClockwise if x > 0 && y >= 0 => {
+                if inward {
+                    (true, -1)
+                } else {
+                    (false, 1)
+                }
+            }
+            Sense::CounterClockwise if x <= 0 && y > 0 => {
+                if inward {
+                    (false, -1)
+                } else {
+                    (true, -1)
+                }
+            }
+            Sense::CounterClockwise if x < 0 && y <= 0 => {
+                if inward {
+                    (true, 1)
+                } else {
+                    (false, -1)
+                }
+            }
+            Sense::CounterClockwise if x >= 0 && y < 0 => {
+                if inward {
+                    (false, 1)
+                } else {
+                    (true, 1)
+                }
+            }
+            Sense::Clockwise if x >= 0 && y > 0 => {
+                if inward {
+                    (false, -1)
+                } else {
+                    (true, 1)
+                }
+            }
+            Sense::Clockwise if x > 0 && y <= 0 => {
+                if inward {
+                    (true, -1)
+                } else {
+                    (false, -1)
+                }
+            }
+            Sense::Clockwise if x <= 0 && y < 0 => {
+                if inward {
+                    (false, 1)
+                } else {
+                    (true, -1)
+                }
+            }
+            Sense::Clockwise if x < 0 && y >= 0 => {
+                if inward {
+                    (true, 1)
+                } else {
+                    (false, 1)
+                }
+            }
             _ => return Err(Fault::Centre),
         };
         let v = if on_x { &mut x } else { &mut y };

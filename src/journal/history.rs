@@ -59,7 +59,9 @@ impl History {
         let mut lines = Lines { bytes, at: 0 };
         match lines.next() {
             Some((_, line, true)) if line == FIRST_LINE.as_bytes() => {}
-            Some((_, line, false)) if FIRST_LINE.as_bytes().starts_with(line) => return Err(Unreadable::Empty),
+            Some((_, line, false)) if FIRST_LINE.as_bytes().starts_with(line) => {
+                return Err(Unreadable::Empty);
+            }
             None => return Err(Unreadable::Empty),
             Some(_) => return Err(Unreadable::NotAJournal),
         }
@@ -87,7 +89,9 @@ impl History {
                         whole_bytes: 0,
                     });
                 }
-                (None, _) => return Err(Unreadable::Contradiction { byte, what: "a fact comes before its job" }),
+                (None, _) => {
+                    return Err(Unreadable::Contradiction { byte, what: "a fact comes before its job" });
+                }
                 (Some(_), Record::Job(_)) => {
                     return Err(Unreadable::Contradiction { byte, what: "a second job in one journal" });
                 }
@@ -227,7 +231,8 @@ pub(super) mod tests {
     #[test]
     fn an_orderly_end_says_exactly_how_far_it_got() {
         let (mut bytes, _) = journal();
-        let ended = Ended { how: How::Stopped, reason: String::new(), block: 31, torn_bytes: 4, at: String::new() };
+        let ended =
+            Ended { how: How::Stopped, reason: String::new(), block: 31, torn_bytes: 4, at: String::new() };
         bytes.extend_from_slice(Record::Ended(ended).to_line().as_bytes());
         let history = History::read(&bytes).unwrap();
         assert_eq!((history.horizon, history.sent, history.state()), (32, 31, "stopped"));

@@ -66,7 +66,9 @@ pub enum Refusal {
         blocks: u64,
     },
     /// C.
-    #[error("block {block} cannot be next: no block after {horizon} was ever sent, so blocks would be skipped")]
+    #[error(
+        "block {block} cannot be next: no block after {horizon} was ever sent, so blocks would be skipped"
+    )]
     WouldSkip {
         /// What was named.
         block: u64,
@@ -80,7 +82,9 @@ pub enum Refusal {
         blocks: u64,
     },
     /// E.
-    #[error("which block comes next is for the operator to say: the control has executed between {accepted} and {horizon} blocks")]
+    #[error(
+        "which block comes next is for the operator to say: the control has executed between {accepted} and {horizon} blocks"
+    )]
     AskBlock {
         /// The last block surely accepted.
         accepted: u64,
@@ -116,7 +120,10 @@ pub fn decide(
             Refusal::Done { blocks: program.blocks }
         } else {
             // Over DC codes nothing is ever acknowledged, so no block is surely accepted.
-            Refusal::AskBlock { accepted: history.job.from_block.saturating_sub(1), horizon: history.horizon.min(program.blocks) }
+            Refusal::AskBlock {
+                accepted: history.job.from_block.saturating_sub(1),
+                horizon: history.horizon.min(program.blocks),
+            }
         });
     };
     // One past the last block sends the stop word alone.
@@ -186,7 +193,8 @@ mod tests {
 
     #[test]
     fn d_a_finished_job_has_nothing_left() {
-        let ended = Ended { how: How::Done, reason: String::new(), block: 253, torn_bytes: 0, at: String::new() };
+        let ended =
+            Ended { how: How::Done, reason: String::new(), block: 253, torn_bytes: 0, at: String::new() };
         let done = History { ended: Some(ended), horizon: 253, ..history() };
         assert_eq!(decide(&done, &program(), Answer::default(), true), Err(Refusal::Done { blocks: 253 }));
         assert!(decide(&done, &program(), from(1), true).is_ok());

@@ -153,7 +153,7 @@ pub struct Writer {
 
 enum Note {
     Attach(u64, Box<dyn Disk>, Arc<Shared>),
-    Fact(u64, Record),
+    Fact(u64, Box<Record>),
     Sync(u64),
     Detach(u64, Sender<()>),
 }
@@ -210,7 +210,7 @@ impl Drop for Writer {
 impl Journal {
     /// Writes a fact with the next sync.
     pub fn note(&self, record: Record) {
-        let _ = self.notes.send(Note::Fact(self.id, record));
+        let _ = self.notes.send(Note::Fact(self.id, Box::new(record)));
     }
 
     /// Asks for a durable horizon.
@@ -268,7 +268,7 @@ fn run(inbox: &Receiver<Note>) {
                 }
                 Note::Fact(id, record) => {
                     if let Some(job) = jobs.iter_mut().find(|job| job.id == id) {
-                        if let Record::Horizon { block } = record {
+                        if let Record::Horizon { block } = *record {
                             job.horizon = job.horizon.max(block);
                         }
                         job.waiting.extend_from_slice(record.to_line().as_bytes());

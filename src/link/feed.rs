@@ -201,7 +201,8 @@ impl Feed<'_> {
             }
             self.publish();
             let now = self.now();
-            let deadline = self.protocol.poll_timeout(now).map_or(IDLE, |at| at.saturating_sub(now)).min(IDLE);
+            let deadline =
+                self.protocol.poll_timeout(now).map_or(IDLE, |at| at.saturating_sub(now)).min(IDLE);
             let wait = if blocked { deadline.max(BLOCKED).min(IDLE) } else { deadline };
             let received = if self.asked {
                 // A batch is on its way: wait for that, and look at the line in between.
@@ -242,7 +243,14 @@ impl Feed<'_> {
     /// Keeps the protocol in blocks and the journal ahead of them.
     fn refill(&mut self) {
         let now = self.now();
-        self.horizon.advance(&self.journal, self.next_block, self.first_block, self.block, now, self.protocol.tally());
+        self.horizon.advance(
+            &self.journal,
+            self.next_block,
+            self.first_block,
+            self.block,
+            now,
+            self.protocol.tally(),
+        );
         if self.asked {
             match self.arrivals.try_recv() {
                 Ok(batch) => self.take(batch),

@@ -78,8 +78,11 @@ impl SerialLink {
 
         let pseudo_terminal = is_pseudo_terminal(&device);
         // A pseudo-terminal has no framing and some kernels refuse to pretend.
-        let framing =
-            if pseudo_terminal { Framing { data_bits: 8, parity: Parity::None, stop_bits: 1 } } else { framing };
+        let framing = if pseudo_terminal {
+            Framing { data_bits: 8, parity: Parity::None, stop_bits: 1 }
+        } else {
+            framing
+        };
         let builder = serialport::new(device.display().to_string(), baud)
             .data_bits(match framing.data_bits {
                 5 => DataBits::Five,

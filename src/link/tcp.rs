@@ -65,7 +65,10 @@ impl Link for TcpLink {
             self.wait(wait).map_err(LinkError::Lost)?;
         }
         match self.stream.read(buffer) {
-            Ok(0) => Err(LinkError::Lost(io::Error::new(io::ErrorKind::UnexpectedEof, "the device server closed it"))),
+            Ok(0) => Err(LinkError::Lost(io::Error::new(
+                io::ErrorKind::UnexpectedEof,
+                "the device server closed it",
+            ))),
             Ok(count) => Ok(count),
             Err(error) => match error.kind() {
                 io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => Ok(0),

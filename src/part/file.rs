@@ -74,7 +74,11 @@ impl PartFile {
             Some(PointOrWord::Word("centre")) => made.lead_in = LeadIn::Centre,
             Some(PointOrWord::Word("none")) => made.lead_in = LeadIn::None,
             Some(PointOrWord::Word(_)) => {
-                return Err(part.error("lead_in", "`lead_in` must be \"centre\", \"none\" or a point `[x, y]` in mm", None));
+                return Err(part.error(
+                    "lead_in",
+                    "`lead_in` must be \"centre\", \"none\" or a point `[x, y]` in mm",
+                    None,
+                ));
             }
             None => reader.assumed.push("lead_in = \"centre\"".to_owned()),
         }
@@ -112,7 +116,12 @@ impl PartFile {
 }
 
 /// The wire: an offset, or diameter, gap and side.
-fn offset(part: &Section<'_>, wire: &Section<'_>, reader: &mut Reader, made: &mut Part) -> Result<(), KeyError> {
+fn offset(
+    part: &Section<'_>,
+    wire: &Section<'_>,
+    reader: &mut Reader,
+    made: &mut Part,
+) -> Result<(), KeyError> {
     let given = either(part, wire, "offset", |s| s.number("offset"))?;
     let (diameter, gap) = (wire.number("diameter")?, wire.number("gap")?);
     let side = wire.word("side", &[("outside", 1.0), ("inside", -1.0)])?;
@@ -125,7 +134,8 @@ fn offset(part: &Section<'_>, wire: &Section<'_>, reader: &mut Reader, made: &mu
             made.offset = side * (diameter / 2.0 + gap);
         }
         _ => {
-            let message = "the wire is given either by `offset` alone, or by `diameter`, `gap` and `side` together";
+            let message =
+                "the wire is given either by `offset` alone, or by `diameter`, `gap` and `side` together";
             return Err(wire.error("offset", message, Some("offset = diameter / 2 + gap, negative inside")));
         }
     }
@@ -140,7 +150,9 @@ fn either<'a, T>(
     read: impl Fn(&Section<'a>) -> Result<Option<T>, KeyError>,
 ) -> Result<Option<T>, KeyError> {
     match (read(part)?, read(own)?) {
-        (Some(_), Some(_)) => Err(own.error(key, format!("`{key}` is given twice, here and in [part]"), None)),
+        (Some(_), Some(_)) => {
+            Err(own.error(key, format!("`{key}` is given twice, here and in [part]"), None))
+        }
         (first, second) => Ok(first.or(second)),
     }
 }
@@ -216,7 +228,10 @@ mod tests {
 
     #[test]
     fn what_is_left_out_is_named() {
-        let file = PartFile::parse("[part]\nkind = \"gear\"\nteeth = 20\n[wire]\ndiameter = 0.12\ngap = 0.01\nside = \"inside\"\n").unwrap();
+        let file = PartFile::parse(
+            "[part]\nkind = \"gear\"\nteeth = 20\n[wire]\ndiameter = 0.12\ngap = 0.01\nside = \"inside\"\n",
+        )
+        .unwrap();
         assert_eq!(file.part.gear.teeth, 20);
         assert!((file.part.offset + 0.07).abs() < 1e-12);
         assert!(file.assumed.contains(&"module = 0.4".to_owned()));

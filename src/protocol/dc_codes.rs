@@ -151,11 +151,13 @@ impl DcCodes {
                 self.end(Ending::Stopped { torn: None });
             }
             State::Feeding if self.is_all_handed() => self.state = State::Draining,
-            State::Draining if now >= self.pacer.free_at() => self.end(if self.stopping && !self.is_all_handed() {
-                Ending::Stopped { torn: None }
-            } else {
-                Ending::Done { trailer_unsent: 0 }
-            }),
+            State::Draining if now >= self.pacer.free_at() => {
+                self.end(if self.stopping && !self.is_all_handed() {
+                    Ending::Stopped { torn: None }
+                } else {
+                    Ending::Done { trailer_unsent: 0 }
+                })
+            }
             State::Lingering { until } if now >= until => {
                 let trailer_unsent = self.left();
                 self.end(Ending::Done { trailer_unsent });
@@ -167,7 +169,11 @@ impl DcCodes {
                     self.end(Ending::Failed { failure: Failure::NeverStarted(limit), torn: None });
                 }
             }
-            State::Feeding | State::Held { .. } | State::Draining | State::Lingering { .. } | State::Ended => {}
+            State::Feeding
+            | State::Held { .. }
+            | State::Draining
+            | State::Lingering { .. }
+            | State::Ended => {}
         }
     }
 
@@ -182,7 +188,8 @@ impl DcCodes {
     fn hold(&mut self, now: Duration) {
         // The DC3 left the control one latency ago; whatever is completed after that is overrun.
         let since_release = (self.handed - self.handed_at_release) as usize;
-        let overrun = self.pacer.completed_after(now.saturating_sub(self.settings.pace.latency), since_release);
+        let overrun =
+            self.pacer.completed_after(now.saturating_sub(self.settings.pace.latency), since_release);
         self.tally.max_overrun_bytes = self.tally.max_overrun_bytes.max(overrun as u64);
         if self.is_only_trailer_left() {
             if self.settings.ends_with_stop_word {
@@ -202,11 +209,12 @@ impl DcCodes {
     fn character(&mut self, byte: u8, now: Duration) {
         let code = byte & 0x7F;
         match self.state {
-            State::AwaitingStart { .. } => match code {
-                DC1 => self.begin(),
-                // Whatever the control says before it asks, such as the DC3 that ended its last transfer, is not ours.
-                _ => {}
-            },
+            State::AwaitingStart { .. } => {
+                // Whatever else the control says before it asks, such as the DC3 that ended its last transfer, is not ours.
+                if code == DC1 {
+                    self.begin();
+                }
+            }
             State::Feeding => match code {
                 DC3 => self.hold(now),
                 SYN => self.fail(Failure::ControlReset),

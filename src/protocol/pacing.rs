@@ -182,7 +182,9 @@ impl Pacer {
     pub fn completed_after(&self, then: Duration, handed_since: usize) -> usize {
         match self.pace.character {
             None => handed_since,
-            Some(character) => characters_within(self.free_at.saturating_sub(then), character).min(handed_since),
+            Some(character) => {
+                characters_within(self.free_at.saturating_sub(then), character).min(handed_since)
+            }
         }
     }
 }

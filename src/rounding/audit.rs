@@ -48,7 +48,8 @@ impl Audit {
                 self.opened[n] = self.stands[n];
             }
             // Arcs run alike under `rotated` and its neighbour `mirrored`.
-            let moved = if arc && model == Model::Mirrored { before } else { model.displacement(&made.block)? };
+            let moved =
+                if arc && model == Model::Mirrored { before } else { model.displacement(&made.block)? };
             before = moved;
             self.stands[n] += moved;
             if made.at_node {

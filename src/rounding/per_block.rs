@@ -97,6 +97,8 @@ mod tests {
         assert!((ccw(p(5.0, 0.0), p(5.0, 0.0), Axis::Y) - 20.0).abs() < 1e-12);
         assert!((ccw(p(3.0, 4.0), p(-3.0, 4.0), Axis::Y) - 2.0).abs() < 1e-12);
         assert!((travel(p(-3.0, 4.0), p(3.0, 4.0), Sense::Clockwise, Axis::Y) - 2.0).abs() < 1e-12);
-        assert!((travel(p(3.0, 4.0), p(-3.0, 4.0), Sense::Clockwise, Axis::X) - (2.0 + 10.0 + 2.0)).abs() < 1e-12);
+        assert!(
+            (travel(p(3.0, 4.0), p(-3.0, 4.0), Sense::Clockwise, Axis::X) - (2.0 + 10.0 + 2.0)).abs() < 1e-12
+        );
     }
 }

@@ -173,9 +173,20 @@ impl Outline {
         nodes.extend(left.iter().rev().skip(on_axis).copied().map(flip));
         let crossing = usize::from(!sharp_tip);
         bends.extend(
-            left_bends.iter().rev().skip(crossing).map(|bend| bend.map(|(centre, sense)| (flip(centre), sense))),
+            left_bends
+                .iter()
+                .rev()
+                .skip(crossing)
+                .map(|bend| bend.map(|(centre, sense)| (flip(centre), sense))),
         );
-        Self { teeth, mirrored: direction == Direction::CounterClockwise, nodes, bends, sharp_tip, trimmed_root }
+        Self {
+            teeth,
+            mirrored: direction == Direction::CounterClockwise,
+            nodes,
+            bends,
+            sharp_tip,
+            trimmed_root,
+        }
     }
 
     /// The number of elements of one tooth.

@@ -55,7 +55,13 @@ impl Bench {
 
     /// Runs the sender to its end.
     pub(crate) fn run(&self, arguments: &[&str]) -> Output {
-        finish(self.dripfeed(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("dripfeed runs"))
+        finish(
+            self.dripfeed(arguments)
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped())
+                .spawn()
+                .expect("dripfeed runs"),
+        )
     }
 
     /// What `generate` prints for a part file.
@@ -132,29 +138,26 @@ impl Mock {
 
     /// Waits until it has cut all it received: its block count rests for a while.
     pub(crate) fn settled(&self) -> serde_json::Value {
-        let began = Instant::now();
         let mut last = self.status();
         let mut rested = 0;
-        while rested < 4 {
+        wait_until("the mock comes to rest", || {
             pause(Duration::from_millis(220));
             let status = self.status();
             rested = if status == last { rested + 1 } else { 0 };
             last = status;
-            assert!(began.elapsed() < PATIENCE, "the mock does not come to rest");
-        }
+            rested == 4
+        });
         last
     }
 
     /// Waits for it to leave by itself; its exit code and report.
     pub(crate) fn finished(mut self) -> (i32, serde_json::Value) {
-        let began = Instant::now();
-        let status = loop {
-            if let Some(status) = self.child.try_wait().expect("the mock can be asked") {
-                break status;
-            }
-            assert!(began.elapsed() < PATIENCE, "the mock does not end");
-            pause(Duration::from_millis(5));
-        };
+        let mut status = None;
+        wait_until("the mock ends", || {
+            status = self.child.try_wait().expect("the mock can be asked");
+            status.is_some()
+        });
+        let status = status.expect("it ended");
         (status.code().expect("it ended by itself"), self.read_report())
     }
 
@@ -199,9 +202,19 @@ pub(crate) fn finish(child: Child) -> Output {
     output
 }
 
+/// Waits for something to come about.
+pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let began = Instant::now();
+    while !is_so() {
+        assert!(began.elapsed() < PATIENCE, "it never came about: {what}");
+        pause(Duration::from_millis(5));
+    }
+}
+
 /// Sends a signal to a process.
 pub(crate) fn signal(child: &Child, signal: rustix::process::Signal) {
-    rustix::process::kill_process(rustix::process::Pid::from_child(child), signal).expect("the process is there");
+    rustix::process::kill_process(rustix::process::Pid::from_child(child), signal)
+        .expect("the process is there");
 }
 
 /// Lets time pass: for the other process, never to make a check come out.

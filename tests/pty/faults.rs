@@ -2,24 +2,21 @@
 
 use std::io::Write;
 use std::process::Stdio;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rustix::process::Signal;
 
-use super::bench::{Bench, PATIENCE, finish, pause, said, signal, verdict};
+use super::bench::{Bench, Mock, finish, pause, said, signal, verdict, wait_until};
 
 /// Waits until the mock has cut at least so many blocks.
-fn wait_for_blocks(mock: &super::bench::Mock, blocks: u64) {
-    let began = Instant::now();
-    while mock.status()["blocks"].as_u64().unwrap_or(0) < blocks {
-        assert!(began.elapsed() < PATIENCE, "the mock never cut {blocks} blocks");
-        pause(Duration::from_millis(5));
-    }
+fn wait_for_blocks(mock: &Mock, blocks: u64) {
+    wait_until("blocks are cut", || mock.status()["blocks"].as_u64().unwrap_or(0) >= blocks);
 }
 
 /// The resume line a failure printed, as words.
 fn resume_line(stderr: &str) -> Vec<String> {
-    let line = stderr.lines().find_map(|line| line.strip_prefix("to go on: dripfeed ")).expect("a resume line");
+    let line =
+        stderr.lines().find_map(|line| line.strip_prefix("to go on: dripfeed ")).expect("a resume line");
     line.split(' ').map(str::to_owned).collect()
 }
 
@@ -124,7 +121,6 @@ fn ctrl_c_stops_at_the_end_of_a_block_and_the_job_goes_on_from_there() {
 #[test]
 fn a_second_ctrl_c_stops_at_once_and_names_the_torn_block() {
     let bench = Bench::new();
-    // One long-winded block, so that the stop falls into it: blanks are sent as they stand in no other program.
     let part = bench.gear(12);
     let mock = bench.mock_on_pty(&["--baud", "300", "--overrun-limit", "100", "--buffer", "400"]);
     let port = mock.port.clone();
@@ -133,11 +129,7 @@ fn a_second_ctrl_c_stops_at_once_and_names_the_torn_block() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let began = Instant::now();
-    while mock.status()["bytes"].as_u64().unwrap_or(0) < 30 {
-        assert!(began.elapsed() < PATIENCE, "nothing is sent");
-        pause(Duration::from_millis(5));
-    }
+    wait_until("bytes are sent", || mock.status()["bytes"].as_u64().unwrap_or(0) >= 30);
     signal(&child, Signal::INT);
     pause(Duration::from_millis(120));
     signal(&child, Signal::INT);
@@ -154,10 +146,7 @@ fn a_second_sender_on_one_port_is_refused() {
     let port = mock.port.clone();
     let send = ["send", &part, "--port", &port, "--unpaced"];
     let mut first = bench.dripfeed(&send).stderr(Stdio::piped()).spawn().unwrap();
-    let began = Instant::now();
-    while bench.newest_job().is_null() {
-        assert!(began.elapsed() < PATIENCE, "the first sender does not begin");
-    }
+    wait_until("the job begins", || !bench.newest_job().is_null());
     let (code, stderr) = verdict(&bench.run(&send));
     assert_eq!(code, 5, "{stderr}");
     assert!(stderr.contains("is in use"), "{stderr}");
@@ -177,7 +166,8 @@ fn a_full_disk_in_mid_job_is_said_and_the_job_goes_on() {
         mock.port,
         bench.path("journals").display()
     );
-    let output = std::process::Command::new("bash").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
+    let output =
+        std::process::Command::new("bash").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
     let (code, stderr) = verdict(&output);
     assert_eq!(code, 0, "{stderr}");
     assert!(stderr.contains("RESUME NOT GUARANTEED"), "{stderr}");
@@ -196,7 +186,8 @@ fn a_disk_that_is_full_before_the_job_sends_nothing() {
         mock.port,
         bench.path("journals").display()
     );
-    let output = std::process::Command::new("bash").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
+    let output =
+        std::process::Command::new("bash").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
     let (code, stderr) = verdict(&output);
     assert_eq!(code, 1, "{stderr}");
     assert!(stderr.contains("the journal") && stderr.contains("nothing was sent"), "{stderr}");
@@ -240,10 +231,7 @@ fn a_file_that_changes_under_the_job_stops_it() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let began = Instant::now();
-    while bench.newest_job().is_null() {
-        assert!(began.elapsed() < PATIENCE, "the job does not begin");
-    }
+    wait_until("the job begins", || !bench.newest_job().is_null());
     std::fs::OpenOptions::new().append(true).open(&file).unwrap().write_all(b"B1B0B000001GXL1\n").unwrap();
     mock.dismissed();
     finish(child);
@@ -253,10 +241,7 @@ fn a_file_that_changes_under_the_job_stops_it() {
     let mock = bench.mock_on_tcp(&["--start-delay", "1", "--unpaced"]);
     let port = mock.port.clone();
     let child = bench.dripfeed(&["send", &file, "--port", &port]).stderr(Stdio::piped()).spawn().unwrap();
-    let began = Instant::now();
-    while bench.newest_job()["state"] != "running" {
-        assert!(began.elapsed() < PATIENCE, "the job does not begin");
-    }
+    wait_until("the job runs", || bench.newest_job()["state"] == "running");
     std::fs::OpenOptions::new().append(true).open(&file).unwrap().write_all(b"B1B0B000001GXL1\n").unwrap();
     let (code, stderr) = verdict(&finish(child));
     assert_eq!(code, 3, "{stderr}");

@@ -26,7 +26,18 @@ fn kill_and_resume(seed: u64, whole: &serde_json::Value, struck: &mut Struck) {
     let bench = Bench::new();
     let part = bench.gear(12);
     // The overrun is not what is tested here, and a killed sender cannot obey a DC3.
-    let mock = bench.mock_on_pty(&["--baud", "38400", "--overrun-limit", "200", "--buffer", "512", "--xoff-at", "192", "--xon-at", "64"]);
+    let mock = bench.mock_on_pty(&[
+        "--baud",
+        "38400",
+        "--overrun-limit",
+        "200",
+        "--buffer",
+        "512",
+        "--xoff-at",
+        "192",
+        "--xon-at",
+        "64",
+    ]);
     let port = mock.port.clone();
     let line = ["--port", &port, "--baud", "38400"];
     let mut arguments = vec!["send", &part];
@@ -39,7 +50,10 @@ fn kill_and_resume(seed: u64, whole: &serde_json::Value, struck: &mut Struck) {
     let executed = mock.settled()["blocks"].as_u64().unwrap();
     let job = bench.newest_job();
     let claimed = job["sent_to_block"].as_u64().unwrap_or(0);
-    assert!(claimed >= executed, "seed {seed}: the journal claims {claimed}, the control executed {executed}");
+    assert!(
+        claimed >= executed,
+        "seed {seed}: the journal claims {claimed}, the control executed {executed}"
+    );
     let total = whole["blocks"].as_u64().unwrap();
     match executed {
         0 => struck.before_the_first_block += 1,

@@ -156,7 +156,9 @@ fn a_profile_that_starts_at_once_needs_no_dc1() {
 
 #[test]
 fn syn_and_nak_after_dc3_are_final_with_and_without_parity() {
-    for (answer, words) in [(SYN, "was reset"), (0x96, "was reset"), (NAK, "raised an alarm"), (0x95, "raised an alarm")] {
+    for (answer, words) in
+        [(SYN, "was reset"), (0x96, "was reset"), (NAK, "raised an alarm"), (0x95, "raised an alarm")]
+    {
         let (bench, mut control) = (Bench::new(), Control::new());
         let (child, _) = begin(&bench, &control, &[]);
         control.say(&[DC1]);

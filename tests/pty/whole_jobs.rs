@@ -15,7 +15,8 @@ struct Expected {
 }
 
 fn expect(program: &str) -> Expected {
-    let mut expected = Expected { blocks: 0, pulses: 0, end_um: [0, 0], path_length_mm: 0.0, sha256: String::new() };
+    let mut expected =
+        Expected { blocks: 0, pulses: 0, end_um: [0, 0], path_length_mm: 0.0, sha256: String::new() };
     for line in program.lines().filter(|line| *line != "DD") {
         let block = parse_block(line).expect("a block");
         let travel = interpolator::run(Model::Rotated, &block, |_, _| {}).expect("a block that ends");

@@ -193,7 +193,10 @@ pub(crate) fn run(setup: &Setup) -> Run {
     for step in 0.. {
         assert!(step < 2_000_000, "the control does not come to rest");
         control.advance(now);
-        let Some(next) = control.next_wakeup().filter(|&next| next < finished_at + Duration::from_secs(600)) else { break };
+        let Some(next) = control.next_wakeup().filter(|&next| next < finished_at + Duration::from_secs(600))
+        else {
+            break;
+        };
         now = next.max(now + Duration::from_nanos(1));
     }
     Run {

@@ -13,7 +13,7 @@ use crate::dialect::three_b::{Block, Kind};
 #[must_use]
 pub fn length_um(block: &Block, travel: &Travel) -> f64 {
     match block.kind {
-        Kind::Line => real(travel.dx).hypot(real(travel.dy)),
+        Kind::Line => libm::hypot(real(travel.dx), real(travel.dy)),
         Kind::Clockwise => arc_length_um(block, travel, -1.0),
         Kind::CounterClockwise => arc_length_um(block, travel, 1.0),
     }
@@ -32,12 +32,12 @@ fn arc_length_um(block: &Block, travel: &Travel, sense: f64) -> f64 {
         true_end = piece.to;
     }
     let executed = (start_x + real(travel.dx), start_y + real(travel.dy));
-    (sweep + sense * between(true_end, executed)).max(0.0) * start_x.hypot(start_y)
+    (sweep + sense * between(true_end, executed)).max(0.0) * libm::hypot(start_x, start_y)
 }
 
 /// The angle from one direction to another, radians, counter-clockwise positive, in (−π, π].
 fn between(from: (f64, f64), to: (f64, f64)) -> f64 {
-    let angle = to.1.atan2(to.0) - from.1.atan2(from.0);
+    let angle = libm::atan2(to.1, to.0) - libm::atan2(from.1, from.0);
     if angle > PI {
         angle - TAU
     } else if angle <= -PI {

@@ -1,4 +1,8 @@
 //! Arcs: the published pulse sequences, one to four quadrants, full circles, a wrong G.
+#![expect(
+    clippy::disallowed_methods,
+    reason = "an oracle of the test's own; no part depends on its last bit"
+)]
 
 use std::f64::consts::TAU;
 

@@ -3,13 +3,19 @@
 use std::sync::Arc;
 
 use super::{BAUD, Verdict, Watch};
-use crate::drawing::{Align, Class, Extent, Outline, Picture, PngError, Shape, Sketch, Turn, View, figures, legend};
+use crate::drawing::{
+    Align, Class, Extent, Outline, Picture, PngError, Shape, Sketch, Turn, View, figures, legend,
+};
 use crate::geometry::{Element, Point, Sense};
 use crate::part::Prepared;
 use crate::shapes::cycloid_gear::{Direction, Trim};
 
 /// The page as SVG and PNG.
-pub(super) fn draw(prepared: &Prepared, watch: &Watch, verdict: &Verdict) -> Result<(String, Vec<u8>), PngError> {
+pub(super) fn draw(
+    prepared: &Prepared,
+    watch: &Watch,
+    verdict: &Verdict,
+) -> Result<(String, Vec<u8>), PngError> {
     let page = page(prepared, watch, verdict);
     Ok((page.to_svg(), page.to_png(2400)?))
 }
@@ -25,13 +31,15 @@ fn page(prepared: &Prepared, watch: &Watch, verdict: &Verdict) -> Picture {
 
     let body = sketch(nominal.clone().map(|o| Shape::path(Class::Part, o).filled()));
     let kerf = sketch(cut.clone().map(|o| Shape::path(Class::Wire, o).wide(width)));
-    let lines = sketch([
-        nominal.map(|o| Shape::path(Class::Nominal, o)),
-        cut.clone().map(|o| Shape::path(Class::Cut, o)),
-        lead_in.map(|o| Shape::path(Class::LeadIn, o)),
-    ]
-    .into_iter()
-    .flatten());
+    let lines = sketch(
+        [
+            nominal.map(|o| Shape::path(Class::Nominal, o)),
+            cut.clone().map(|o| Shape::path(Class::Cut, o)),
+            lead_in.map(|o| Shape::path(Class::LeadIn, o)),
+        ]
+        .into_iter()
+        .flatten(),
+    );
 
     let tip = part.gear.module * part.gear.teeth as f64 / 2.0 * 1.1;
     let reach = reach(watch);
@@ -40,8 +48,13 @@ fn page(prepared: &Prepared, watch: &Watch, verdict: &Verdict) -> Picture {
         Shape::start(origin),
         Shape::text(Class::Label, origin, Align::Left, "start").nudged([4.0, -1.2]),
         Shape::path(Class::Direction, mark.clone()),
-        Shape::text(Class::Label, [-0.39 * tip, -0.39 * tip], Align::Left, "direction of cut").nudged([2.5, 1.0]),
-        Shape::dimension([-reach, -1.22 * tip], [reach, -1.22 * tip], &format!("Ø {:.3} over the path", 2.0 * reach)),
+        Shape::text(Class::Label, [-0.39 * tip, -0.39 * tip], Align::Left, "direction of cut")
+            .nudged([2.5, 1.0]),
+        Shape::dimension(
+            [-reach, -1.22 * tip],
+            [reach, -1.22 * tip],
+            format!("Ø {:.3} over the path", 2.0 * reach),
+        ),
     ];
     marks.extend(mark.along(1.0).map(|end| Shape::head(Class::Direction, end.at, end.heading)));
     let marks = sketch(marks);
@@ -58,9 +71,21 @@ fn page(prepared: &Prepared, watch: &Watch, verdict: &Verdict) -> Picture {
     let window = Extent::around([0.0, -0.12 * tip], 2.6 * tip, 2.6 * tip);
     let whole = View::new(Extent::between([14.0, 52.0], [142.0, 182.0]), window);
     let whole = page.place(whole.titled("Whole part").showing(&body).showing(&lines).showing(&marks));
-    let tooth = Extent::around([part.gear.module * part.gear.teeth as f64 / 2.0, 0.0], 4.2 * part.gear.module, 4.2 * part.gear.module);
+    let tooth = Extent::around(
+        [part.gear.module * part.gear.teeth as f64 / 2.0, 0.0],
+        4.2 * part.gear.module,
+        4.2 * part.gear.module,
+    );
     let tooth = View::new(Extent::between([155.0, 52.0], [283.0, 182.0]), tooth);
-    page.place(tooth.titled("One tooth").enlarging(whole).showing(&body).showing(&kerf).showing(&lines).showing(&near));
+    page.place(
+        tooth
+            .titled("One tooth")
+            .enlarging(whole)
+            .showing(&body)
+            .showing(&kerf)
+            .showing(&lines)
+            .showing(&near),
+    );
 
     let report = &verdict.report;
     page.draw_all(figures(
@@ -74,7 +99,8 @@ fn page(prepared: &Prepared, watch: &Watch, verdict: &Verdict) -> Picture {
             ("Closure", &format!("{:.2} µm", verdict.closure_um)),
         ],
     ));
-    let utilisation = report.line_utilisation.map_or_else(|| "not known".to_owned(), |u| format!("{:.1} %", 100.0 * u));
+    let utilisation =
+        report.line_utilisation.map_or_else(|| "not known".to_owned(), |u| format!("{:.1} %", 100.0 * u));
     page.draw_all(figures(
         [112.0, 46.0],
         84.0,

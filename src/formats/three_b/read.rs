@@ -103,7 +103,10 @@ impl<R: BufRead> Reader<R> {
                 b' ' | b'\t' | b'\r' | b'\n' | 0 => self.at += 1,
                 b'%' | b';' | b'*' => self.at = self.line.len(),
                 b'(' => {
-                    self.at = self.line[self.at..].iter().position(|&b| b == b')').map_or(self.line.len(), |n| self.at + n + 1);
+                    self.at = self.line[self.at..]
+                        .iter()
+                        .position(|&b| b == b')')
+                        .map_or(self.line.len(), |n| self.at + n + 1);
                 }
                 b'N' | b'n' if self.skip_line_number() => {}
                 b'B' | b'b' if self.block_follows() => return self.block().map(Some),
@@ -161,7 +164,9 @@ impl<R: BufRead> Reader<R> {
     /// Whether the B here opens a block: a number or another B comes after it.
     fn block_follows(&self) -> bool {
         let next = self.line[self.at + 1..].iter().find(|b| !b.is_ascii_whitespace());
-        next.is_none_or(|&b| b.is_ascii_digit() || b == b'B' || b == b'b' || b == b'-' || b == b'+' || b == b'.')
+        next.is_none_or(|&b| {
+            b.is_ascii_digit() || b == b'B' || b == b'b' || b == b'-' || b == b'+' || b == b'.'
+        })
     }
 
     fn stop_word(&mut self) -> Option<&'static str> {
@@ -227,7 +232,10 @@ impl<R: BufRead> Reader<R> {
                     return Err(self.error(
                         self.at,
                         1,
-                        format!("{name} holds `{}`: 3B numbers are whole micrometres without sign", byte as char),
+                        format!(
+                            "{name} holds `{}`: 3B numbers are whole micrometres without sign",
+                            byte as char
+                        ),
                         "write 6.617 mm as 6617; the direction is in the digit of Z",
                     ));
                 }
@@ -249,25 +257,36 @@ impl<R: BufRead> Reader<R> {
         Ok(value)
     }
 
-    fn expect(&mut self, wanted: &str, accept: impl Fn(u8) -> bool, help: &'static str) -> Result<u8, ReadError> {
+    fn expect(
+        &mut self,
+        wanted: &str,
+        accept: impl Fn(u8) -> bool,
+        help: &'static str,
+    ) -> Result<u8, ReadError> {
         match self.peek()? {
             Some(byte) if accept(byte) => {
                 self.take(byte);
                 Ok(byte)
             }
             Some(byte) => {
-                let found =
-                    if byte.is_ascii_graphic() { format!("`{}`", byte as char) } else { format!("byte {byte:02X}h") };
+                let found = if byte.is_ascii_graphic() {
+                    format!("`{}`", byte as char)
+                } else {
+                    format!("byte {byte:02X}h")
+                };
                 Err(self.error(self.at, 1, format!("expected {wanted}, found {found}"), help))
             }
-            None => Err(self.error(self.at, 0, format!("expected {wanted}, found the end of the program"), help)),
+            None => {
+                Err(self.error(self.at, 0, format!("expected {wanted}, found the end of the program"), help))
+            }
         }
     }
 
     fn block(&mut self) -> Result<Item, ReadError> {
         self.text.clear();
         self.blocks += 1;
-        let (line, line_number, line_byte, at) = (self.line_number, self.line_number, self.line_byte, self.at);
+        let (line, line_number, line_byte, at) =
+            (self.line_number, self.line_number, self.line_byte, self.at);
         if let Some(word) = self.ended_by {
             return Err(self.error(
                 self.at,
@@ -312,8 +331,11 @@ impl<R: BufRead> Reader<R> {
         self.check(&block).map_err(|fault| {
             // A block over several lines is shown by its last one.
             let (from, width) = if line == self.line_number { (at, self.at - at) } else { (0, self.at) };
-            let (number, byte) =
-                if line == self.line_number { (line_number, line_byte) } else { (self.line_number, self.line_byte) };
+            let (number, byte) = if line == self.line_number {
+                (line_number, line_byte)
+            } else {
+                (self.line_number, self.line_byte)
+            };
             let text = self.line.strip_suffix(b"\n").unwrap_or(&self.line);
             ReadError::Program {
                 message: fault.to_string(),
@@ -367,7 +389,10 @@ mod tests {
         assert_eq!(texts("bbb9900gxl1"), ["BBB9900GXL1"]);
         assert_eq!(texts("B579 B6617\n  B006617 Y\tL2\r\n"), ["B579B6617B006617YL2"]);
         let (item, _) = read("B B B500 G Y L2").unwrap().remove(0);
-        assert_eq!(item, Item::Block(Block { x: Micrometres(0), y: Micrometres(0), ..Block::line(Position::new(0, 500)) }));
+        assert_eq!(
+            item,
+            Item::Block(Block { x: Micrometres(0), y: Micrometres(0), ..Block::line(Position::new(0, 500)) })
+        );
     }
 
     #[test]
@@ -382,7 +407,10 @@ mod tests {
     #[test]
     fn every_fault_has_its_place_and_says_what_was_expected() {
         let (message, line, column) = refusal("B1B2B000003GXL1\nB100B20B000100GZL1\n");
-        assert_eq!((message.as_str(), line, column), ("expected the counting axis GX or GY, found `Z`", 2, 16));
+        assert_eq!(
+            (message.as_str(), line, column),
+            ("expected the counting axis GX or GY, found `Z`", 2, 16)
+        );
         assert_eq!(refusal("B1B2B3GXL5").0, "expected the digit 1, 2, 3 or 4, found `5`");
         assert_eq!(refusal("B1B2B3GXL").0, "expected the digit 1, 2, 3 or 4, found the end of the program");
         assert_eq!(refusal("B1B-2B3GXL1").2, 4);

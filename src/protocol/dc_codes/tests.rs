@@ -83,7 +83,12 @@ fn a_hold_of_ten_hours_is_shown_and_not_timed_out() {
 
 #[test]
 fn reset_and_alarm_are_final_in_either_parity() {
-    let cases = [(0x16, Failure::ControlReset), (0x96, Failure::ControlReset), (0x15, Failure::ControlAlarm), (0x95, Failure::ControlAlarm)];
+    let cases = [
+        (0x16, Failure::ControlReset),
+        (0x96, Failure::ControlReset),
+        (0x15, Failure::ControlAlarm),
+        (0x95, Failure::ControlAlarm),
+    ];
     for (byte, failure) in cases {
         let mut m = machine();
         m.offer_block(1, b"B1B2\n");
@@ -139,7 +144,8 @@ fn a_hold_at_the_stop_word_is_known_for_the_end_once_the_source_is_at_its_end() 
 
 #[test]
 fn a_hold_before_the_trailer_without_a_stop_word_is_a_hold() {
-    let mut m = DcCodes::new(Settings { ends_with_stop_word: false, ..settings(Pace::unpaced()) }, Duration::ZERO);
+    let mut m =
+        DcCodes::new(Settings { ends_with_stop_word: false, ..settings(Pace::unpaced()) }, Duration::ZERO);
     m.handle_received(&[0x11], MS);
     m.offer_block(1, b"B1\n");
     m.finish();
@@ -179,7 +185,8 @@ fn a_stop_waits_for_the_end_of_the_block_and_a_second_one_does_not() {
 fn a_control_that_never_starts_is_waited_for_unless_the_profile_says_how_long() {
     assert_eq!(machine().poll_timeout(MS), None);
     let limit = Duration::from_secs(3);
-    let mut m = DcCodes::new(Settings { start_timeout: Some(limit), ..settings(Pace::unpaced()) }, Duration::ZERO);
+    let mut m =
+        DcCodes::new(Settings { start_timeout: Some(limit), ..settings(Pace::unpaced()) }, Duration::ZERO);
     assert_eq!(m.poll_timeout(MS), Some(limit));
     m.handle_timeout(limit);
     let failure = Failure::NeverStarted(limit);

@@ -22,7 +22,9 @@ pub enum Impossible {
         rule: &'static str,
     },
     /// The root circle has no radius.
-    #[error("knf = {knf} puts the root at or inside the gear's centre: with {teeth} teeth it must be below {bound:.4}")]
+    #[error(
+        "knf = {knf} puts the root at or inside the gear's centre: with {teeth} teeth it must be below {bound:.4}"
+    )]
     RootAtCentre {
         /// knf as given.
         knf: f64,
@@ -32,7 +34,9 @@ pub enum Impossible {
         bound: f64,
     },
     /// ρ > r_c, or the flank circle does not meet the pitch circle.
-    #[error("kp = {kp} makes the tip flank radius {rho:.4} mm, larger than the {r_c:.4} mm circle of its centres: no radial flank touches it")]
+    #[error(
+        "kp = {kp} makes the tip flank radius {rho:.4} mm, larger than the {r_c:.4} mm circle of its centres: no radial flank touches it"
+    )]
     FlankRadius {
         /// kp as given.
         kp: f64,
@@ -42,7 +46,9 @@ pub enum Impossible {
         r_c: f64,
     },
     /// The tip flank arc never reaches the pitch circle.
-    #[error("kp = {kp} with kr = {kr}: the tip flank arc does not reach the pitch circle, so the tooth thickness cannot be measured there; kp must be between |kr| and {bound:.4}")]
+    #[error(
+        "kp = {kp} with kr = {kr}: the tip flank arc does not reach the pitch circle, so the tooth thickness cannot be measured there; kp must be between |kr| and {bound:.4}"
+    )]
     PitchCircle {
         /// kp as given.
         kp: f64,
@@ -52,7 +58,9 @@ pub enum Impossible {
         bound: f64,
     },
     /// β ≤ 0.
-    #[error("ks = {ks} makes the tooth too thick (β = {beta_deg:.4}° is not above 0): it must be below {bound:.4}")]
+    #[error(
+        "ks = {ks} makes the tooth too thick (β = {beta_deg:.4}° is not above 0): it must be below {bound:.4}"
+    )]
     ToothTooThick {
         /// ks as given.
         ks: f64,
@@ -62,7 +70,9 @@ pub enum Impossible {
         bound: f64,
     },
     /// φ ≤ 0.
-    #[error("ks = {ks} with {teeth} teeth leaves no tooth space (φ = {phi_deg:.4}° is not above 0): ks must be below {bound:.4}, or kp smaller")]
+    #[error(
+        "ks = {ks} with {teeth} teeth leaves no tooth space (φ = {phi_deg:.4}° is not above 0): ks must be below {bound:.4}, or kp smaller"
+    )]
     NoSpace {
         /// ks as given.
         ks: f64,
@@ -82,7 +92,9 @@ pub enum Impossible {
         rho: f64,
     },
     /// r_c sin β > ρ − R'.
-    #[error("tip-radius = {tip_radius} mm does not fit between the tip flanks: it must be at most {bound:.4} mm (lower ks or raise kp for a thicker tooth)")]
+    #[error(
+        "tip-radius = {tip_radius} mm does not fit between the tip flanks: it must be at most {bound:.4} mm (lower ks or raise kp for a thicker tooth)"
+    )]
     TipTooNarrow {
         /// R', mm.
         tip_radius: f64,
@@ -90,7 +102,9 @@ pub enum Impossible {
         bound: f64,
     },
     /// The flank between root arc and tip flank vanishes.
-    #[error("knf = {knf} makes the straight flank vanish (from radius {from:.4} mm to {to:.4} mm): with these parameters knf must be above {bound:.4}")]
+    #[error(
+        "knf = {knf} makes the straight flank vanish (from radius {from:.4} mm to {to:.4} mm): with these parameters knf must be above {bound:.4}"
+    )]
     FlankVanishes {
         /// knf as given.
         knf: f64,
@@ -102,7 +116,9 @@ pub enum Impossible {
         bound: f64,
     },
     /// ρ_f − EE ≤ 0.
-    #[error("offset = {offset} mm is too much for the tooth space: its root radius is {rho_f:.4} mm, so the largest offset that fits is below that (wire diameter plus two spark gaps below {wire:.4} mm)")]
+    #[error(
+        "offset = {offset} mm is too much for the tooth space: its root radius is {rho_f:.4} mm, so the largest offset that fits is below that (wire diameter plus two spark gaps below {wire:.4} mm)"
+    )]
     WireTooThick {
         /// EE, mm.
         offset: f64,
@@ -112,7 +128,9 @@ pub enum Impossible {
         wire: f64,
     },
     /// With the root trimmed, even the flanks are gone.
-    #[error("offset = {offset} mm closes the tooth space: trimmed flanks would meet outside the flank; it must be below {bound:.4} mm")]
+    #[error(
+        "offset = {offset} mm closes the tooth space: trimmed flanks would meet outside the flank; it must be below {bound:.4} mm"
+    )]
     SpaceClosed {
         /// EE, mm.
         offset: f64,
@@ -146,7 +164,9 @@ impl Impossible {
             | Self::NoSpace { .. }
             | Self::TipRadius { .. }
             | Self::TipTooNarrow { .. }
-            | Self::FlankVanishes { .. } => "`dripfeed generate --explain gear` shows every parameter with its meaning",
+            | Self::FlankVanishes { .. } => {
+                "`dripfeed generate --explain gear` shows every parameter with its meaning"
+            }
         }
     }
 }
@@ -183,7 +203,11 @@ impl CycloidGear {
         let z = teeth as f64;
         let r = module * z / 2.0;
         if r > R_MAX_MM {
-            return Err(Impossible::Number { name: "module", value: module, rule: "such that the pitch radius is at most 100 m" });
+            return Err(Impossible::Number {
+                name: "module",
+                value: module,
+                rule: "such that the pitch radius is at most 100 m",
+            });
         }
         let r_f = r - knf * module;
         if r_f <= 0.0 {

@@ -35,7 +35,12 @@ impl LeadIn {
     /// # Errors
     ///
     /// When the gear itself is impossible.
-    pub fn crosses_kept_part(self, gear: &CycloidGear, outline: &Outline, offset: f64) -> Result<bool, Impossible> {
+    pub fn crosses_kept_part(
+        self,
+        gear: &CycloidGear,
+        outline: &Outline,
+        offset: f64,
+    ) -> Result<bool, Impossible> {
         let Some(from) = self.point() else { return Ok(false) };
         if offset == 0.0 {
             return Ok(false);
