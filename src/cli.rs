@@ -1,7 +1,7 @@
 //! The command line: one subcommand a file, its manual on top.
 //!
 //! Words are checked first, then files are read, then a port is opened. Data goes to standard output; progress, log and
-//! diagnostics to standard error. The exit code says whose turn it is to act, see [`failure::Exit`].
+//! diagnostics to standard error. The exit code says whose turn it is to act, see the list in the README.
 
 #[cfg(feature = "demo")]
 mod demo;

@@ -13,7 +13,7 @@ use super::{Link, LinkError};
 use crate::journal::Record;
 use crate::journal::writer::Journal;
 use crate::program::{Line, Program, ProgramError, Segment, Segments};
-use crate::protocol::{Command, Ending, Event, Failure, Phase, Protocol, Tally};
+use crate::protocol::{Command, Ending, Event, Phase, Protocol, Tally};
 use crate::tape::{Tape, Unencodable};
 
 /// What the screen shows of a running feed.
@@ -426,12 +426,6 @@ fn produce(
             return;
         }
     }
-}
-
-/// How an ending by the link's loss is told from others.
-#[must_use]
-pub fn is_link_lost(ending: &Ending) -> bool {
-    matches!(ending, Ending::Failed { failure: Failure::LinkLost, .. })
 }
 
 /// The longest the loop sleeps: a stop is obeyed within this.
