@@ -3,6 +3,7 @@
 //! Words are checked first, then files are read, then a port is opened. Data goes to standard output; progress, log and
 //! diagnostics to standard error. The exit code says whose turn it is to act, see the list in the README.
 
+mod connection;
 #[cfg(feature = "demo")]
 mod demo;
 mod failure;
@@ -10,10 +11,12 @@ mod feeding;
 mod generate;
 mod jobs;
 mod machines;
+mod question;
 mod resume;
 mod screen;
 mod send;
 mod source;
+mod verdict;
 
 use std::process::ExitCode;
 

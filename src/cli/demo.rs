@@ -15,10 +15,11 @@ use clap::Args;
 use mock_controller::{BlockEnd, Framing, Observer, Pace, Report, Settings, Until};
 use serde_json::json;
 
+use super::connection::{self, Connection, LineOptions};
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Connection, Feeding, LineOptions};
+use super::feeding::{self, Feeding};
 use super::source::Source;
-use super::{print, print_json};
+use super::{print, print_json, verdict};
 use crate::drawing::Thinning;
 use crate::geometry::Point;
 use crate::journal::Job;
@@ -116,7 +117,8 @@ fn feed(prepared: &Prepared, directory: &Path) -> Result<(Report, Watch, f64), F
             })
             .map_err(ours)?;
         let outcome = send(prepared, &address.to_string(), directory);
-        if outcome.is_err() {
+        // A control whose program broke off would wait for the rest for ever.
+        if !matches!(outcome, Ok(ref outcome) if matches!(outcome.ending, Ending::Done { .. })) {
             stop.store(true, Ordering::Relaxed);
         }
         let report =
@@ -128,7 +130,7 @@ fn feed(prepared: &Prepared, directory: &Path) -> Result<(Report, Watch, f64), F
         Ending::Done { .. } => Ok((report, watch, seconds)),
         Ending::Stopped { .. } | Ending::Failed { .. } => {
             // The demo's job is not kept, so there is nothing to go on with.
-            feeding::conclude(outcome, "demo", "dripfeed demo", "demo").map(|()| (report, watch, seconds))
+            verdict::conclude(outcome, "demo", "dripfeed demo", "demo").map(|()| (report, watch, seconds))
         }
     }
 }
@@ -150,7 +152,7 @@ fn send(prepared: &Prepared, address: &str, directory: &Path) -> Result<crate::l
         kind: "part".to_owned(),
         source_digest: String::new(),
         machine: "generic-iso".to_owned(),
-        machine_digest: feeding::profile_digest(&connection.profile),
+        machine_digest: connection::profile_digest(&connection.profile),
         port: connection.port.to_string(),
         settings: line.words(),
         from_block: 1,

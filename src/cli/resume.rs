@@ -15,9 +15,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::connection::{self, Connection, LineOptions};
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Connection, Feeding, LineOptions};
+use super::feeding::{self, Feeding};
 use super::jobs;
+use super::question;
 use super::send::quoted;
 use super::source::{Kind, Source};
 use crate::formats::three_b::Block;
@@ -85,8 +87,8 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         ));
     }
     let line = options.line.clone().or(&job.settings);
-    let profile = feeding::profile(Some(&job.machine), &line)?;
-    if options.line.words().is_empty() && feeding::profile_digest(&profile) != job.machine_digest {
+    let profile = connection::profile(Some(&job.machine), &line)?;
+    if options.line.words().is_empty() && connection::profile_digest(&profile) != job.machine_digest {
         return Err(Failure::new(
             Exit::Profile,
             format!("the machine profile {} has changed since the job was sent", job.machine),
@@ -102,7 +104,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     let mut answer = Answer { from_block: options.from_block, control_cleared: options.control_cleared };
     let mut decision = decide(&history, &program, answer, discards_partial);
     if let Err(Refusal::AskBlock { .. }) = decision {
-        let text = feeding::answer("The block after the last one that the control executed: ")?;
+        let text = question::answer("The block after the last one that the control executed: ")?;
         let block = text
             .trim()
             .parse()
@@ -123,7 +125,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         Some(port) => port,
         None => Port::parse(&job.port).map_err(|error| Failure::new(Exit::Usage, error))?,
     };
-    feeding::ask(&format!("Does the wire stand where block {from_block} begins? Go on?"), options.yes)?;
+    question::ask(&format!("Does the wire stand where block {from_block} begins? Go on?"), options.yes)?;
     let connection = Connection::plan(port, profile, &line);
     let link = connection.open()?;
     let (file, _) = writer::reopen(&directory, &job.job).map_err(|error| Failure::journal(&error))?;

@@ -74,9 +74,10 @@ impl Screen {
         let blocks = self.total.blocks.load(Ordering::Relaxed);
         let bytes = self.total.bytes.load(Ordering::Relaxed);
         let sent = snapshot.tally.bytes;
+        // What matters most stands first: a terminal of 80 columns cuts the end off.
         let mut line = format!("block {}", snapshot.block);
         if blocks > 0 {
-            line.push_str(&format!(" of {blocks}"));
+            line.push_str(&format!("/{blocks}"));
         }
         line.push_str(&format!(", {}", size(sent)));
         if bytes > 0 {
@@ -85,10 +86,10 @@ impl Screen {
         line.push_str(&format!(", {}", state_words(snapshot, true)));
         if let (Some(character), true) = (self.character, bytes > sent && snapshot.phase == Phase::Feeding) {
             let seconds = character.as_secs_f64() * (bytes - sent) as f64;
-            line.push_str(&format!(", {} of line time to go", clock(Duration::from_secs_f64(seconds))));
+            line.push_str(&format!(", {} to go", clock(Duration::from_secs_f64(seconds))));
         }
         if snapshot.tally.holds > 0 {
-            line.push_str(&format!(", held {} in all", clock(snapshot.tally.held)));
+            line.push_str(&format!(" (held {} before)", clock(snapshot.tally.held)));
         }
         if !snapshot.journal_ok {
             line.push_str(", RESUME NOT GUARANTEED: the journal cannot be written");
@@ -113,7 +114,7 @@ fn state_words(snapshot: &Snapshot, with_time: bool) -> String {
         Phase::Ended => "ended".to_owned(),
     };
     if snapshot.stopping && snapshot.phase != Phase::Ended {
-        words.push_str("; stopping at the end of the block, Ctrl-C again stops at once");
+        words.push_str("; stopping at the block's end, Ctrl-C again: at once");
     }
     words
 }

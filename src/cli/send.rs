@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! $ dripfeed send gear.toml --port /dev/ttyUSB0 --machine mill.toml
-//! /dev/ttyUSB0: 4800 baud 7E2, window 3 bytes, receive latency 17 ms (the adapter's latency timer and 1 ms)
-//! block 120 of 265, 3085 B, 45 %, feeding, 00:00:08 of line time to go
+//! /dev/ttyUSB0: 4800 baud 7E2, window 1 bytes
+//! receive latency 17.0 ms, the adapter's latency timer and 1 ms
+//! block 120/265, 3085 B, 45 %, feeding, 00:00:08 to go
 //! ```
 //!
 //! The source is checked first; then the port is opened, the job written down, and the control's request awaited. Ctrl-C
@@ -13,9 +14,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::connection::{self, Connection, LineOptions};
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Connection, Feeding, LineOptions};
+use super::feeding::{self, Feeding};
 use super::jobs;
+use super::question;
 use super::source::{Kind, Source};
 use crate::journal::Job;
 use crate::journal::writer::{self, Writer};
@@ -74,19 +77,19 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         return feeding::dry_run(&source, from_block);
     }
     let machine = options.machine.or_else(|| source.prepared().and_then(|p| p.part().machine.clone()));
-    let profile = feeding::profile(machine.as_deref(), &options.line)?;
+    let profile = connection::profile(machine.as_deref(), &options.line)?;
     let Some(port) = options.port else {
         return Err(Failure::new(Exit::Usage, "where to send is not said; name it with --port"));
     };
     if warnings.contains(&Warning::LeadInCrossesKeptPart) {
-        feeding::ask("The lead-in will slit the part that is kept. Send it all the same?", options.yes)?;
+        question::ask("The lead-in will slit the part that is kept. Send it all the same?", options.yes)?;
     }
     if from_block > 1 {
         let question = format!(
             "Block {from_block} goes first and blocks 1 to {} are not sent: 3B is incremental, so the wire must stand where block {from_block} begins. Go on?",
             from_block - 1
         );
-        feeding::ask(&question, options.yes)?;
+        question::ask(&question, options.yes)?;
     }
 
     let directory = jobs::directory(options.journal.as_deref())?;
@@ -102,7 +105,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         kind: source.kind.name().to_owned(),
         source_digest: source.digest.clone(),
         machine: absolute_if_file(&machine),
-        machine_digest: feeding::profile_digest(&connection.profile),
+        machine_digest: connection::profile_digest(&connection.profile),
         port: connection.port.to_string(),
         settings: options.line.words(),
         from_block,

@@ -127,6 +127,7 @@ impl Mock {
         let stdout = child.stdout.take().expect("its output is piped");
         BufReader::new(stdout).read_line(&mut line).expect("its first line");
         let port = line.strip_prefix("ready ").expect("the first line says where").trim().to_owned();
+        wait_until("the mock says how it stands", || status.exists());
         Self { child, port, report, status }
     }
 

@@ -119,26 +119,6 @@ fn ctrl_c_stops_at_the_end_of_a_block_and_the_job_goes_on_from_there() {
 }
 
 #[test]
-fn a_second_ctrl_c_stops_at_once_and_names_the_torn_block() {
-    let bench = Bench::new();
-    let part = bench.gear(12);
-    let mock = bench.mock_on_pty(&["--baud", "300", "--overrun-limit", "100", "--buffer", "400"]);
-    let port = mock.port.clone();
-    let child = bench
-        .dripfeed(&["send", &part, "--port", &port, "--baud", "300"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    wait_until("bytes are sent", || mock.status()["bytes"].as_u64().unwrap_or(0) >= 30);
-    signal(&child, Signal::INT);
-    pause(Duration::from_millis(120));
-    signal(&child, Signal::INT);
-    let (code, stderr) = verdict(&finish(child));
-    assert_eq!(code, 7, "{stderr}");
-    assert!(stderr.contains("is torn") || stderr.contains("was the last one sent whole"), "{stderr}");
-}
-
-#[test]
 fn a_second_sender_on_one_port_is_refused() {
     let bench = Bench::new();
     let part = bench.gear(12);

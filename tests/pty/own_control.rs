@@ -6,10 +6,11 @@ use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::Signal;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-use super::bench::{Bench, PATIENCE, finish, pause, verdict};
+use super::bench::{Bench, PATIENCE, finish, pause, signal, verdict};
 
 const DC1: u8 = 0x11;
 const DC3: u8 = 0x13;
@@ -191,4 +192,34 @@ fn a_control_that_stops_reading_at_the_stop_word_is_done() {
     let (code, stderr) = verdict(&finish(child));
     assert_eq!(code, 0, "{stderr}");
     assert_eq!(&heard[heard.len() - 3..], b"DD\n");
+}
+
+#[test]
+fn a_second_stop_within_a_held_block_names_it_and_what_of_it_was_sent() {
+    let (bench, mut control) = (Bench::new(), Control::new());
+    let (child, expected) = begin(&bench, &control, &[]);
+    control.say(&[DC1]);
+    let mut heard = control.hear_at_least(40);
+    // Held with a part of a block out; if it happens to be a whole one, a little further.
+    loop {
+        control.say(&[DC3]);
+        heard.extend(control.hear(QUIET));
+        if heard.last() != Some(&b'\n') {
+            break;
+        }
+        control.say(&[DC1]);
+        heard.extend(control.hear_some(QUIET));
+    }
+    let whole = heard.iter().filter(|&&byte| byte == b'\n').count() - 1;
+    let torn = heard.iter().rev().take_while(|&&byte| byte != b'\n').count();
+    assert_eq!(heard, expected[..heard.len()]);
+
+    signal(&child, Signal::INT);
+    assert_eq!(control.hear(QUIET), b"", "a held sender waits for the control before it finishes the block");
+    signal(&child, Signal::INT);
+    let (code, stderr) = verdict(&finish(child));
+    assert_eq!(code, 7, "{stderr}");
+    let words = format!("block {} is torn, {torn} bytes of it were sent", whole + 1);
+    assert!(stderr.contains(&words), "{words}: {stderr}");
+    assert_eq!(control.hear(QUIET), b"");
 }

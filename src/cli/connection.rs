@@ -1,0 +1,191 @@
+//! Where a job goes and how: the options of the line, the machine's profile, the pacing, the open port.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use super::failure::{Exit, Failure};
+use super::machines;
+use crate::link::serial::{Latency, SerialLink};
+use crate::link::tcp::TcpLink;
+use crate::link::{Link, Port};
+use crate::profile::{Framing, Profile};
+use crate::protocol::pacing::Pace;
+
+/// Options of the line; what they change of the machine's profile.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Line")]
+pub(super) struct LineOptions {
+    /// Protocol, instead of the profile's
+    #[arg(long, value_parser = ["dc-codes"])]
+    pub(super) protocol: Option<String>,
+    /// Speed of the line, instead of the profile's; over TCP it turns pacing on
+    #[arg(long, value_name = "N", conflicts_with = "unpaced")]
+    pub(super) baud: Option<u32>,
+    /// Do not pace a pseudo-terminal: hand over what it takes
+    #[arg(long)]
+    pub(super) unpaced: bool,
+    /// Data bits, parity, stop bits, such as 7E2, instead of the profile's
+    #[arg(long, value_name = "7E2")]
+    pub(super) framing: Option<String>,
+    /// Any other value of the profile
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(super) set: Vec<String>,
+}
+
+impl LineOptions {
+    /// As words, to be written down and read back.
+    pub(super) fn words(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        words.extend(self.protocol.iter().map(|v| format!("protocol={v}")));
+        words.extend(self.baud.iter().map(|v| format!("baud={v}")));
+        words.extend(self.unpaced.then(|| "unpaced".to_owned()));
+        words.extend(self.framing.iter().map(|v| format!("framing={v}")));
+        words.extend(self.set.iter().map(|v| format!("set {v}")));
+        words
+    }
+
+    /// From words written down, what is given here winning over them.
+    pub(super) fn or(mut self, words: &[String]) -> Self {
+        let mut set = Vec::new();
+        for word in words {
+            match word.split_once('=') {
+                Some(("protocol", value)) => self.protocol = self.protocol.or_else(|| Some(value.to_owned())),
+                Some(("baud", value)) if !self.unpaced => {
+                    self.baud = self.baud.or_else(|| value.parse().ok())
+                }
+                Some(("framing", value)) => self.framing = self.framing.or_else(|| Some(value.to_owned())),
+                _ if word == "unpaced" => self.unpaced |= self.baud.is_none(),
+                _ => set.extend(word.strip_prefix("set ").map(str::to_owned)),
+            }
+        }
+        set.append(&mut self.set);
+        Self { set, ..self }
+    }
+}
+
+/// A machine's profile with everything the command line changes, and whether anything was named at all.
+pub(super) fn profile(machine: Option<&str>, line: &LineOptions) -> Result<Profile, Failure> {
+    let name = machine.unwrap_or("generic-iso");
+    let file = machines::load(name)?;
+    if machine.is_none() {
+        eprintln!("no --machine is named; feeding as generic-iso:\n");
+        eprintln!("{}", crate::profile::GENERIC_ISO);
+    } else if !file.assumed.is_empty() {
+        eprintln!("{name}: not given, taken from generic-iso: {}", file.assumed.join(", "));
+    }
+    let mut profile = file.profile;
+    if let Some(baud) = line.baud {
+        set(&mut profile, "baud", &baud.to_string(), "--baud")?;
+    }
+    if let Some(framing) = &line.framing {
+        if Framing::parse(framing).is_none() {
+            return Err(Failure::new(
+                Exit::Usage,
+                format!("--framing {framing} is not data bits 5-8, parity N, E or O, and stop bits 1 or 2"),
+            )
+            .help("typical is --framing 7E2"));
+        }
+        set(&mut profile, "framing", framing, "--framing")?;
+    }
+    for pair in &line.set {
+        let Some((key, value)) = pair.split_once('=') else {
+            return Err(Failure::new(Exit::Usage, format!("--set {pair} is not KEY=VALUE")).help(
+                "for example --set pacing=strict; `dripfeed machines show generic-iso` lists the keys",
+            ));
+        };
+        set(&mut profile, key.trim(), value.trim(), "--set")?;
+    }
+    Ok(profile)
+}
+
+fn set(profile: &mut Profile, key: &str, value: &str, option: &str) -> Result<(), Failure> {
+    profile.set(key, value).map_err(|error| {
+        let failure = Failure::new(Exit::Usage, format!("{option}: {error}"));
+        match error.help {
+            Some(help) => failure.help(help),
+            None => failure,
+        }
+    })
+}
+
+/// Where a job goes and how the line is paced.
+#[derive(Debug)]
+pub(super) struct Connection {
+    pub(super) port: Port,
+    pub(super) profile: Profile,
+    pub(super) pace: Pace,
+}
+
+impl Connection {
+    /// Works out the pacing and says what it means, before the port is opened.
+    pub(super) fn plan(port: Port, profile: Profile, options: &LineOptions) -> Self {
+        // Where no adapter delays what the control says, this process itself may still be late to hear it.
+        let own = OWN_DELAY.min(2 * profile.framing.character(profile.baud));
+        let (paced, latency, source) = match (&port, profile.receive_latency) {
+            (Port::Tcp(_), given) => {
+                let source =
+                    if given.is_some() { "from the profile" } else { "allowed for this system's own delays" };
+                (options.baud.is_some() && !options.unpaced, given.unwrap_or(own), source)
+            }
+            (Port::Serial(_), Some(latency)) => (!options.unpaced, latency, "from the profile"),
+            (Port::Serial(device), None) => match Latency::of(device) {
+                Latency::Nothing => (!options.unpaced, own, "allowed for this system's own delays"),
+                Latency::Adapter(latency) => {
+                    (!options.unpaced, latency, "the adapter's latency timer and 1 ms")
+                }
+                Latency::Assumed(latency) => {
+                    (!options.unpaced, latency, "ASSUMED: the adapter does not say; set receive_latency_ms")
+                }
+            },
+        };
+        let pace = if paced { profile.pace(latency) } else { Pace::unpaced() };
+        let line = Self { port, profile, pace };
+        line.say(source);
+        line
+    }
+
+    fn say(&self, latency_source: &str) {
+        let Profile { baud, framing, overrun_limit, .. } = self.profile;
+        let Some(_) = self.pace.character else {
+            eprintln!(
+                "{}: not paced; bytes under way when the control says stop cannot be recalled",
+                self.port
+            );
+            return;
+        };
+        let worst = self.pace.worst_overrun();
+        let latency = self.pace.latency.as_secs_f64() * 1e3;
+        eprintln!("{}: {baud} baud {framing}, window {} bytes", self.port, self.pace.window);
+        eprintln!("receive latency {latency:.1} ms, {latency_source}");
+        if self.pace.gaps.is_some() {
+            eprintln!(
+                "strict pacing: at most {worst} characters after DC3, by listening gaps; at most {:.0} % of the line's time is used",
+                100.0 * self.pace.best_utilisation()
+            );
+        } else if worst > overrun_limit {
+            eprintln!(
+                "warning: up to {worst} characters may follow the control's DC3, and it allows {overrun_limit}; lower the adapter's latency timer, the baud, or keep the rule with --set pacing=strict"
+            );
+        }
+    }
+
+    /// Opens the port.
+    pub(super) fn open(&self) -> Result<Box<dyn Link>, Failure> {
+        Ok(match &self.port {
+            Port::Serial(device) => Box::new(
+                SerialLink::open(device, self.profile.baud, self.profile.framing)
+                    .map_err(|error| Failure::link(&error))?,
+            ),
+            Port::Tcp(address) => Box::new(TcpLink::open(address).map_err(|error| Failure::link(&error))?),
+        })
+    }
+}
+
+/// The profile's values in one digest, so that a changed profile is noticed.
+pub(super) fn profile_digest(profile: &Profile) -> String {
+    blake3::hash(format!("{profile:?}").as_bytes()).to_hex().to_string()
+}
+
+/// How late this process may be to hear the control, where the link itself adds nothing. A guess.
+const OWN_DELAY: Duration = Duration::from_millis(3);

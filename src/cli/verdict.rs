@@ -1,0 +1,110 @@
+//! The last word on a feed: the journal's end record, the report's figures, and what the operator reads.
+
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::failure::{Exit, Failure};
+use super::feeding::time_of_day;
+use crate::journal::{Ended, How};
+use crate::link::feed::{Outcome, Snapshot, SourceFault};
+use crate::program::ProgramError;
+use crate::protocol::{self, Ending, Torn};
+
+/// How a feed ended, for the journal.
+pub(super) fn ended(outcome: &Outcome) -> Ended {
+    let (how, reason, torn) = match &outcome.ending {
+        _ if outcome.source_error.is_some() => (How::Failed, "the program is at fault".to_owned(), None),
+        Ending::Done { .. } => (How::Done, "all sent".to_owned(), None),
+        Ending::Stopped { torn } => (How::Stopped, "stopped by the operator".to_owned(), *torn),
+        Ending::Failed { failure, torn } => (How::Failed, failure.to_string(), *torn),
+    };
+    let torn_bytes = torn.map_or(0, |Torn { bytes, .. }| bytes as u64);
+    Ended { how, reason, block: outcome.last.block, torn_bytes, at: time_of_day() }
+}
+
+/// The figures of a feed, with the names of the contract.
+pub(super) fn report(outcome: &Outcome, from_block: u64, character: Option<Duration>) -> serde_json::Value {
+    let Snapshot { now, block, tally, first_byte, .. } = outcome.last;
+    let sending = now.saturating_sub(first_byte.unwrap_or(now)).saturating_sub(tally.held);
+    let utilisation = character.map(|character| {
+        (character.as_secs_f64() * tally.bytes as f64 / sending.as_secs_f64().max(1e-9)).min(1.0)
+    });
+    json!({
+        "blocks": block + 1 - from_block.min(block + 1),
+        "bytes": tally.bytes,
+        "seconds": now.as_secs_f64(),
+        "held_seconds": tally.held.as_secs_f64(),
+        "holds": tally.holds,
+        // Without a wire-time model nothing is known of it.
+        "max_overrun_bytes": character.map(|_| tally.max_overrun_bytes),
+        "line_utilisation": utilisation,
+        "first_byte_ms": first_byte.map(|at| at.as_secs_f64() * 1e3),
+    })
+}
+
+/// The last word on a feed.
+pub(super) fn conclude(outcome: Outcome, job: &str, resume: &str, source: &str) -> Result<(), Failure> {
+    let block = outcome.last.block;
+    let next = format!("{resume} --from-block {}", block + 1);
+    let after = format!("block {block} was the last one sent whole");
+    let torn_words = |torn: Option<Torn>| match torn {
+        Some(Torn { block, bytes }) => format!("; block {block} is torn, {bytes} bytes of it were sent"),
+        None => String::new(),
+    };
+    if let Some(error) = outcome.source_error {
+        let place = format!("block {} cannot be made and was not sent", error.block);
+        let failure = match error.fault {
+            SourceFault::Program(ProgramError::Read(read)) => {
+                let mut failure = Failure::read(source, read);
+                failure.prefix(&place);
+                failure
+            }
+            SourceFault::Tape(error) => Failure::new(Exit::Program, format!("{place}: {error}")),
+            SourceFault::ProducerDied => {
+                Failure::new(Exit::Ours, format!("{place}: its maker stopped without a word"))
+            }
+        };
+        return Err(failure.resume_with(next));
+    }
+    match outcome.ending {
+        Ending::Done { trailer_unsent } => {
+            if trailer_unsent > 0 {
+                eprintln!(
+                    "the control stopped reading at the stop word; {trailer_unsent} bytes of trailer were not wanted"
+                );
+            }
+            eprintln!("done: job {job}, {block} blocks");
+            Ok(())
+        }
+        Ending::Stopped { torn } => {
+            Err(Failure::new(Exit::Stopped, format!("stopped by the operator: {after}{}", torn_words(torn)))
+                .help("the control's own screen says which block it executed last; name the one after it")
+                .resume_with(next))
+        }
+        Ending::Failed { failure, torn } => {
+            let what = match (failure, &outcome.link_error) {
+                (protocol::Failure::LinkLost, Some(error)) => error.to_string(),
+                (failure, _) => failure.to_string(),
+            };
+            let exit = match failure {
+                protocol::Failure::ControlReset | protocol::Failure::ControlAlarm => Exit::Control,
+                protocol::Failure::LinkLost | protocol::Failure::NeverStarted(_) => Exit::Link,
+            };
+            let help = match failure {
+                protocol::Failure::NeverStarted(_) => {
+                    "start reading at the control; if it asked before this job was armed, use --set start=at-once"
+                }
+                protocol::Failure::ControlReset | protocol::Failure::ControlAlarm => {
+                    "clear the alarm at the control, and read there which block it executed last"
+                }
+                protocol::Failure::LinkLost => {
+                    "mend the link; the control's own screen says which block it executed last: name the one after it"
+                }
+            };
+            Err(Failure::new(exit, format!("{what}: {after}{}", torn_words(torn)))
+                .help(help)
+                .resume_with(next))
+        }
+    }
+}
