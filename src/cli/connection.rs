@@ -120,17 +120,12 @@ pub(super) struct Connection {
 impl Connection {
     /// Works out the pacing and says what it means, before the port is opened.
     pub(super) fn plan(port: Port, profile: Profile, options: &LineOptions) -> Self {
-        // Where no adapter delays what the control says, this process itself may still be late to hear it.
-        let own = OWN_DELAY.min(2 * profile.framing.character(profile.baud));
         let (paced, latency, source) = match (&port, profile.receive_latency) {
-            (Port::Tcp(_), given) => {
-                let source =
-                    if given.is_some() { "from the profile" } else { "allowed for this system's own delays" };
-                (options.baud.is_some() && !options.unpaced, given.unwrap_or(own), source)
-            }
+            (Port::Tcp(_), Some(latency)) => (options.baud.is_some(), latency, "from the profile"),
+            (Port::Tcp(_), None) => (options.baud.is_some(), Duration::ZERO, "the network's is not known"),
             (Port::Serial(_), Some(latency)) => (!options.unpaced, latency, "from the profile"),
             (Port::Serial(device), None) => match Latency::of(device) {
-                Latency::Nothing => (!options.unpaced, own, "allowed for this system's own delays"),
+                Latency::Nothing => (!options.unpaced, Duration::ZERO, "a pseudo-terminal adds none"),
                 Latency::Adapter(latency) => {
                     (!options.unpaced, latency, "the adapter's latency timer and 1 ms")
                 }
@@ -186,6 +181,3 @@ impl Connection {
 pub(super) fn profile_digest(profile: &Profile) -> String {
     blake3::hash(format!("{profile:?}").as_bytes()).to_hex().to_string()
 }
-
-/// How late this process may be to hear the control, where the link itself adds nothing. A guess.
-const OWN_DELAY: Duration = Duration::from_millis(3);

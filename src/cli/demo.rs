@@ -53,8 +53,6 @@ pub(super) struct Verdict {
 
 /// The speed of the demo's line: the gear takes about a quarter of a minute.
 const BAUD: u32 = 4800;
-/// Control and sender share this machine; a busy one may be this late to pass a DC3 on.
-const ALLOWED_DELAY: std::time::Duration = std::time::Duration::from_millis(8);
 
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let directory = options.keep.clone().unwrap_or_else(|| std::env::temp_dir().join("dripfeed-demo"));
@@ -140,7 +138,6 @@ fn send(prepared: &Prepared, address: &str, directory: &Path) -> Result<crate::l
     let mut profile =
         Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?;
     profile.baud = BAUD;
-    profile.receive_latency = Some(ALLOWED_DELAY);
     let line = LineOptions { baud: Some(BAUD), ..LineOptions::default() };
     let connection = Connection::plan(Port::Tcp(address.to_owned()), profile, &line);
     let link = connection.open()?;

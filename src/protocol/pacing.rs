@@ -42,11 +42,14 @@ impl Pace {
         Self { character: None, window: UNPACED_WINDOW, gaps: None, latency: Duration::ZERO }
     }
 
-    /// Free running: a window as large as the overrun limit leaves beside the latency, at least 1.
+    /// Free running. Of the characters the limit leaves beside the latency, half may wait in the driver, to keep the line
+    /// busy, and half are for this process being late to hear DC3; on a fast line more wait, enough to bridge a
+    /// millisecond. At least one.
     #[must_use]
     pub fn free(character: Duration, latency: Duration, limit: usize) -> Self {
-        let lost = characters_within(latency, character) + UNNOTICED;
-        let window = limit.saturating_sub(lost).clamp(1, WINDOW_MAX);
+        let left = limit.saturating_sub(characters_within(latency, character));
+        let bridge = characters_within(BRIDGED, character).min(left.saturating_sub(UNNOTICED));
+        let window = left.div_ceil(2).max(bridge).clamp(1, WINDOW_MAX);
         Self { character: Some(character), window, gaps: None, latency }
     }
 
@@ -91,6 +94,10 @@ fn characters_within(time: Duration, character: Duration) -> usize {
 
 /// A character may leave the driver between the moment DC3 can be seen and the moment this process sees it.
 const UNNOTICED: usize = 1;
+/// How long a full driver should keep the line busy while this process is not running. A guess at a desktop's scheduling.
+const BRIDGED: Duration = Duration::from_millis(1);
+/// How often the driver is refilled at most.
+const REFILLED: Duration = Duration::from_micros(500);
 /// In strict pacing the driver holds no more than this: enough to keep the line busy within a burst.
 const STRICT_WINDOW: usize = 2;
 /// Added to the span for the sender's own delay in noticing. A guess; a slower machine shows in `max_overrun_bytes`.
@@ -166,8 +173,8 @@ impl Pacer {
     #[must_use]
     pub fn room_at(&self, now: Duration) -> Option<Duration> {
         let character = self.pace.character?;
-        // Refill when half the window has left, so that the line never runs dry between two wake-ups.
-        let keep = self.pace.window / 2;
+        // Refill as soon as a character has left; on a fast line not more often than every half millisecond.
+        let keep = self.pace.window.saturating_sub(characters_within(REFILLED, character).max(1));
         let by_window = self.free_at.saturating_sub(character * (keep as u32));
         let by_gap = self.pace.gaps.and_then(|gaps| {
             let earlier = self.completed.len().checked_sub(gaps.burst)?;
@@ -204,9 +211,11 @@ mod tests {
         let pace = Pace::free(character(4800), 16 * MS, 10);
         assert_eq!((pace.window, pace.worst_overrun()), (2, 10));
         let pace = Pace::free(character(9600), 4 * MS, 10);
-        assert_eq!((pace.window, pace.worst_overrun()), (5, 10));
+        assert_eq!((pace.window, pace.worst_overrun()), (3, 8));
         let pace = Pace::free(character(9600), 16 * MS, 10);
         assert_eq!((pace.window, pace.worst_overrun()), (1, 16));
+        let pace = Pace::free(character(115_200), Duration::ZERO, 10);
+        assert_eq!((pace.window, pace.worst_overrun()), (9, 10));
     }
 
     #[test]
