@@ -73,7 +73,8 @@ pub(crate) struct Measured {
     pub(crate) element_of_block: Vec<usize>,
 }
 
-/// Executes the blocks under all models and lays them against the path. The alignment looks at the `trusted` models only.
+/// Executes the blocks under all models and lays them against the path. The alignment looks at the `trusted` models
+/// only.
 pub(crate) fn measure(blocks: &[Block], path: &Path, trusted: &[Model]) -> Result<Measured, String> {
     let mut cuts = Vec::new();
     for model in MODELS {
@@ -117,10 +118,8 @@ fn align(elements: &[Element], cuts: &[&Vec<Place>]) -> Result<Vec<usize>, Strin
             if cost[d] < cost[cheapest] {
                 cheapest = d;
             }
-            let error = cuts
-                .iter()
-                .map(|cut| point(cut[index + 1 + d]).distance(element.end))
-                .fold(0.0, f64::max);
+            let error =
+                cuts.iter().map(|cut| point(cut[index + 1 + d]).distance(element.end)).fold(0.0, f64::max);
             next.push(cost[cheapest] + error * error);
             from.push(cheapest);
         }

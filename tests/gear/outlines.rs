@@ -3,11 +3,14 @@
 use mock_controller::Model;
 
 use crate::binary::{Run, dripfeed};
-use crate::execution::{MODELS, Measured, Program, largest_deviation_um, measure, name_of, promise_kept, read};
+use crate::execution::{
+    MODELS, Measured, Program, largest_deviation_um, measure, name_of, promise_kept, read,
+};
 use crate::part::{LeadIn, PAPERS_PART, Part};
 use crate::theory::{Direction, Gear, PAPER, Root};
 
-/// Parts to be right: the paper's and its relatives, and gears whose nodes lie on the axes (z = 8, 12, 120, 200).
+/// Parts to be right: the paper's and its relatives, and gears nobody printed: tips on the axes (z a multiple of 4),
+/// roots on an axis (z even but not a multiple of 4), corners on the axes.
 pub(crate) fn parts() -> Vec<(&'static str, Part)> {
     let paper = |change: &dyn Fn(&mut Part)| {
         let mut part = PAPERS_PART;
@@ -24,13 +27,21 @@ pub(crate) fn parts() -> Vec<(&'static str, Part)> {
         ("the paper's without a lead-in", paper(&|part| part.lead_in = LeadIn::None)),
         ("the paper's from a hole outside", paper(&|part| part.lead_in = LeadIn::From([-1043, 11_987]))),
         ("the paper's twice", paper(&|part| part.repeat = 2)),
-        ("the paper's, its root trimmed", paper(&|part| {
-            part.gear.offset = 0.297;
-            part.gear.root = Root::Trimmed;
-        })),
         (
-            "8 teeth of module 1",
-            other(Gear { module: 1.0, teeth: 8, offset: 0.1, tip_radius: 0.1, ..PAPER }),
+            "the paper's, its root trimmed",
+            paper(&|part| {
+                part.gear.offset = 0.297;
+                part.gear.root = Root::Trimmed;
+            }),
+        ),
+        ("8 teeth of module 1", other(Gear { module: 1.0, teeth: 8, offset: 0.1, tip_radius: 0.1, ..PAPER })),
+        (
+            "8 teeth as a die, the sharp tips on the axes",
+            other(Gear { module: 1.0, teeth: 8, offset: -0.11, tip_radius: 0.1, ..PAPER }),
+        ),
+        (
+            "10 teeth, two roots on an axis",
+            other(Gear { module: 0.7, teeth: 10, kp: 1.9, offset: 0.08, tip_radius: 0.07, ..PAPER }),
         ),
         (
             "12 teeth, blunt",
@@ -153,7 +164,8 @@ fn a_gear_for_one_control_has_one_block_for_each_element() {
     }
 }
 
-/// A block begins up to 1.5 µm off, turns round a centre rounded to 1 µm, and steps within 1 µm of its curve.
+/// A block begins and ends up to 1.5 µm off and steps within 1 µm of its own curve; the rounding of its centre bends
+/// that curve by up to another half µm.
 #[test]
 fn the_wire_stays_on_the_theoretical_outline_between_the_nodes() {
     for (name, part) in parts() {
@@ -165,8 +177,7 @@ fn the_wire_stays_on_the_theoretical_outline_between_the_nodes() {
         let measured = promise_kept(&program.blocks, &path, "any").expect("the nodes are right");
         for model in MODELS {
             let largest = largest_deviation_um(model, &program.blocks, &path, &measured.element_of_block);
-            println!("{name} {model:?} {largest}");
-            assert!(largest <= 2.5, "{name} under {model:?}: {largest:.3} µm off the outline");
+            assert!(largest <= 3.0, "{name} under {model:?}: {largest:.3} µm off the outline");
         }
     }
 }
@@ -182,6 +193,9 @@ fn the_numbers_on_standard_error_are_those_of_the_execution() {
             &["--interpolator", "exact"],
             &["--rounding", "per-block"],
         ] {
+            if part.repeat > 1 && more[0] == "--rounding" {
+                continue; // A drift that grows from turn to turn: the next test's.
+            }
             let (program, run) = generate(&part, more);
             let path = part.path();
             let trusted = crate::execution::trusted_by(if more[0] == "--rounding" { "any" } else { more[1] });
@@ -193,12 +207,46 @@ fn the_numbers_on_standard_error_are_those_of_the_execution() {
     }
 }
 
+/// The paper's rounding is 1 µm off after a turn, and so 2 µm after two: where the wire stands then is what counts.
+#[test]
+fn the_closure_of_several_turns_is_the_distance_from_where_the_first_began() {
+    let mut part = PAPERS_PART;
+    part.repeat = 2;
+    let (program, run) = generate(&part, &["--rounding", "per-block"]);
+    let measured = measure(&program.blocks, &part.path(), &MODELS).expect("the program can be executed");
+    agree(&run.stderr, &measured, "the paper's twice, per block");
+}
+
+/// A line straight up or down under `mirrored` always steps 1 µm aside first; one block alone can end 1.09 µm off.
+#[test]
+fn a_vertical_line_under_mirrored_ends_within_1_05_um_too() {
+    let gear = Gear {
+        module: 0.1558,
+        teeth: 156,
+        kp: 1.7775,
+        kr: 0.3718,
+        ks: 1.6548,
+        knf: 1.2148,
+        tip_radius: 0.0611,
+        offset: 0.0582,
+        ..PAPER
+    };
+    let part = Part { gear, ..PAPERS_PART };
+    let (program, _) = generate(&part, &["--interpolator", "mirrored"]);
+    let verdict = promise_kept(&program.blocks, &part.path(), "mirrored");
+    assert!(verdict.is_ok(), "{verdict:?}");
+}
+
 /// Each model's line on standard error against the numbers measured here.
 fn agree(stderr: &str, measured: &Measured, what: &str) {
     for (index, model) in MODELS.into_iter().enumerate() {
         let (error, closure) = reported(stderr, model);
-        for (reported, own) in [(error, measured.node_error_um[index]), (closure, measured.closure_um[index])] {
-            assert!((reported - own).abs() <= 0.01, "{what} under {model:?}: {reported} reported, {own} measured");
+        for (reported, own) in [(error, measured.node_error_um[index]), (closure, measured.closure_um[index])]
+        {
+            assert!(
+                (reported - own).abs() <= 0.01,
+                "{what} under {model:?}: {reported} reported, {own} measured"
+            );
         }
     }
 }

@@ -15,6 +15,8 @@
 //!     B                    the next B
 //! ```
 
+#![expect(clippy::disallowed_methods, reason = "the system's trigonometry, apart from the program's own")]
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The numbers a gear is made from; the offset, like all lengths given to the program, in mm.
@@ -140,13 +142,33 @@ impl Gear {
 }
 
 impl Derived {
+    /// How far the centres of the tip flanks lie from the tooth's axis.
+    pub(crate) fn across_um(&self) -> f64 {
+        self.centre_circle_radius * self.beta.sin()
+    }
+
+    /// From the gear's centre along the radial flank to where the tip flank begins.
+    fn flank_end_um(&self) -> f64 {
+        let (r_c, rho) = (self.centre_circle_radius, self.flank_arc_radius);
+        (r_c * r_c - rho * rho).sqrt()
+    }
+
+    /// From the gear's centre along the radial flank to where the root arc ends.
+    fn flank_start_um(&self) -> f64 {
+        (self.root_radius + self.root_arc_radius) * self.phi.cos()
+    }
+
+    /// The length of the straight flank.
+    pub(crate) fn flank_um(&self) -> f64 {
+        self.flank_end_um() - self.flank_start_um()
+    }
+
     /// How far the tooth is from being impossible: the smallest of the lengths that must be above 0, µm. NaN where an
     /// arc sine or cosine has no value.
     pub(crate) fn margin_um(&self, root: Root) -> f64 {
         let Derived { root_radius, flank_arc_radius: rho, centre_circle_radius: r_c, offset, .. } = *self;
-        let across = r_c * self.beta.sin();
-        let flank_end = (r_c * r_c - rho * rho).sqrt();
-        let flank_start = (root_radius + self.root_arc_radius) * self.phi.cos();
+        let across = self.across_um();
+        let (flank_start, flank_end) = (self.flank_start_um(), self.flank_end_um());
         let mut lengths = vec![
             root_radius,
             // β and φ above 0, as lengths: of the centre's distance from the axis, of the half space at the root.
@@ -184,13 +206,12 @@ impl Derived {
 
     /// Where the left tip flank ends, as a direction from its centre.
     fn tip_direction(&self) -> f64 {
-        let across = self.centre_circle_radius * self.beta.sin();
         let reach = if self.has_tip() {
             self.flank_arc_radius - self.tip_radius
         } else {
             self.flank_arc_radius + self.offset
         };
-        (-across / reach).acos()
+        (-self.across_um() / reach).acos()
     }
 
     /// The point of the offset left flank that stands beside the one `along` the radial flank.
@@ -203,14 +224,13 @@ impl Derived {
     fn tooth(&self, root: Root) -> Vec<Element> {
         let Derived { theta, phi, beta, offset, .. } = *self;
         let space = FRAC_PI_2 + theta + phi;
-        let flank_end = self.flank_point((self.centre_circle_radius.powi(2) - self.flank_arc_radius.powi(2)).sqrt());
+        let flank_end = self.flank_point(self.flank_end_um());
         let mut left = Vec::new();
         match root {
             Root::Whole => {
                 let centre = polar(self.root_radius + self.root_arc_radius, space);
                 let bottom = polar(self.root_radius + offset, space);
-                let flank_start =
-                    self.flank_point((self.root_radius + self.root_arc_radius) * phi.cos());
+                let flank_start = self.flank_point(self.flank_start_um());
                 let curve = Curve::Arc { centre, clockwise: false };
                 left.push(Element { start: bottom, end: flank_start, curve });
                 left.push(Element { start: flank_start, end: flank_end, curve: Curve::Line });

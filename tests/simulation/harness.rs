@@ -6,7 +6,7 @@ use dripfeed::part::Part;
 use dripfeed::program::{Generated, Line, Program};
 use dripfeed::protocol::dc_codes::{DcCodes, Settings};
 use dripfeed::protocol::pacing::Pace;
-use dripfeed::protocol::{Ending, Event, Protocol, Tally};
+use dripfeed::protocol::{Ending, Event, ProgramEnd, Protocol, Tally};
 use mock_controller::{BlockEnd, Controller, Framing, Observer, Report, Start};
 
 /// What is run.
@@ -50,9 +50,9 @@ impl Setup {
         // 7E2: eleven bits a character.
         let character = Duration::from_nanos(11_000_000_000 / u64::from(self.baud));
         let mut pace = if self.strict {
-            Pace::strict(character, self.latency, 10)
+            Pace::strict(character, self.latency, 10, None)
         } else {
-            Pace::free(character, self.latency, 10)
+            Pace::free(character, self.latency, 10, None)
         };
         pace.window = self.window.unwrap_or(pace.window);
         pace
@@ -126,7 +126,6 @@ pub(crate) fn run(setup: &Setup) -> Run {
         start_timeout: None,
         leader: LEADER.to_vec(),
         trailer: b"%\n".to_vec(),
-        ends_with_stop_word: true,
     };
     let mut now = Duration::ZERO;
     let mut sender = DcCodes::new(settings, now);
@@ -147,7 +146,7 @@ pub(crate) fn run(setup: &Setup) -> Run {
         while sender.wants_block(now) {
             text.clear();
             match program.pull(&mut text).expect("a gear cannot fail") {
-                None => sender.finish(),
+                None => sender.finish(ProgramEnd::StopWord),
                 Some(line) => {
                     number += u64::from(matches!(line, Line::Block(_)));
                     text.push(b'\n');
