@@ -3,6 +3,14 @@
 //! Words are checked first, then files are read, then a port is opened. Data goes to standard output; progress, log and
 //! diagnostics to standard error. The exit code says whose turn it is to act, see the list in the README.
 
+/// Writes a line to standard error. A job does not die of a log that nobody reads any more.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($words)*);
+    }};
+}
+
 mod connection;
 #[cfg(feature = "demo")]
 mod demo;
@@ -16,6 +24,7 @@ mod resume;
 mod screen;
 mod send;
 mod source;
+mod spot;
 mod verdict;
 
 use std::process::ExitCode;

@@ -47,6 +47,16 @@ impl Model {
         }
     }
 
+    /// How the model bends round a circle.
+    #[must_use]
+    pub fn bend(self) -> Bend {
+        match self {
+            Self::Rotated | Self::Mirrored => Bend::Inward,
+            Self::Strict => Bend::Outward,
+            Self::Exact => Bend::True,
+        }
+    }
+
     /// The displacement the block makes under this model.
     ///
     /// # Errors
@@ -61,14 +71,8 @@ impl Model {
         }
         match block.motion {
             Motion::Line(quadrant) => line::displacement(self, block, quadrant),
-            Motion::Arc(sense, _) => {
-                let bend = match self {
-                    Self::Rotated | Self::Mirrored => Bend::Inward,
-                    Self::Strict => Bend::Outward,
-                    Self::Exact => Bend::True,
-                };
-                Branch::at(block.signed(), sense).and_then(|branch| branch.travel(bend, block.g, block.j.0))
-            }
+            Motion::Arc(sense, _) => Branch::at(block.signed(), sense)
+                .and_then(|branch| branch.travel(self.bend(), block.g, block.j.0)),
         }
     }
 }

@@ -34,6 +34,13 @@ pub enum Record {
         /// H(previous value ‖ text), hexadecimal.
         value: String,
     },
+    /// The whole program's text, stop word included, has this chained digest.
+    Whole {
+        /// Its blocks.
+        blocks: u64,
+        /// See `Segment`.
+        value: String,
+    },
     /// Known to have been handed to the link whole.
     Sent {
         /// The last such block.
@@ -92,8 +99,10 @@ pub struct Ended {
     pub reason: String,
     /// The last block handed to the link whole.
     pub block: u64,
-    /// Bytes of the next block that were handed over, if it was cut in two.
+    /// Bytes of the next line that were handed over, if it was cut in two.
     pub torn_bytes: u64,
+    /// Bytes handed over by this run, leader included.
+    pub bytes: u64,
     /// When, RFC 3339.
     pub at: String,
 }

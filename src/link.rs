@@ -116,6 +116,12 @@ pub enum LinkError {
         /// Why.
         reason: String,
     },
+    /// It is something else.
+    #[error("{port} is not a serial device")]
+    NotSerial {
+        /// What was named.
+        port: String,
+    },
     /// It was there and is gone.
     #[error("the link was lost: {0}")]
     Lost(io::Error),
@@ -130,6 +136,7 @@ impl LinkError {
             io::ErrorKind::NotFound => Self::Missing { port },
             io::ErrorKind::PermissionDenied => Self::Denied { port },
             io::ErrorKind::ResourceBusy => Self::Busy { port, by: None },
+            io::ErrorKind::IsADirectory => Self::NotSerial { port },
             _ => Self::Settings { port, reason: error.to_string() },
         }
     }
@@ -147,6 +154,7 @@ impl LinkError {
             Self::Busy { .. } => "stop the other program first: two senders on one port cut scrap",
             Self::Refused { .. } => "check the address, and that the device server is on and free",
             Self::Settings { .. } => "check baud and framing against the adapter's data sheet",
+            Self::NotSerial { .. } => "a port is a serial device such as /dev/ttyUSB0, or tcp://host:port",
             Self::Lost(_) => "check the cable and the adapter before going on",
         }
     }

@@ -191,7 +191,10 @@ impl Prepared {
     /// The number of elements, lead-in included; closed-loop rounding may split some of them.
     #[must_use]
     pub fn element_count(&self) -> u64 {
-        u64::from(self.part.lead_in.point().is_some()) + self.part.repeat.saturating_mul(self.outline.len())
+        self.part
+            .repeat
+            .saturating_mul(self.outline.len())
+            .saturating_add(u64::from(self.part.lead_in.point().is_some()))
     }
 
     /// Where the wire stands before the first block, in the part's frame.
@@ -251,8 +254,8 @@ pub fn aim_named(name: &str) -> Option<Aim> {
     Model::ALL.into_iter().find(|model| model.name() == name).map(Aim::One)
 }
 
-/// A start hole from its coordinates, mm.
+/// A start hole from its coordinates, mm; none beyond 100 m, where a control counts no more.
 #[must_use]
-pub fn start_hole(x: f64, y: f64) -> LeadIn {
-    LeadIn::From(Point::new(x, y))
+pub fn start_hole(x: f64, y: f64) -> Option<LeadIn> {
+    (x.abs().max(y.abs()) <= 100_000.0).then(|| LeadIn::From(Point::new(x, y)))
 }

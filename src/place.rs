@@ -15,7 +15,7 @@ pub struct Place {
     pub excerpt: String,
     /// Where in `excerpt` the caret goes, in bytes.
     pub caret: usize,
-    /// How many bytes of `excerpt` are meant; at least 1 unless at the end of the line.
+    /// How many bytes of `excerpt` are meant, at least 1.
     pub width: usize,
 }
 
@@ -44,13 +44,21 @@ impl Place {
         let shown = |bytes: &[u8]| -> String {
             bytes.iter().map(|&b| if (b' '..=b'~').contains(&b) { b as char } else { '.' }).collect()
         };
+        let mut excerpt = shown(line.get(from..to).unwrap_or_default());
+        // What is missing at the end of a line is shown behind it.
+        let width = if at >= line.len() {
+            excerpt.push(' ');
+            1
+        } else {
+            width.clamp(1, to - at)
+        };
         Self {
             line: number,
             column: at as u64 + 1,
             byte: line_byte + at as u64,
-            excerpt: shown(line.get(from..to).unwrap_or_default()),
+            excerpt,
             caret: at - from,
-            width: width.min(to.saturating_sub(at)),
+            width,
         }
     }
 }

@@ -169,8 +169,8 @@ impl Profile {
                 help: crate::keys::nearest(name, &names),
             });
         };
-        let bare = value.parse::<f64>().is_ok() || value == "true" || value == "false";
-        let quoted = if bare { value.to_owned() } else { format!("{value:?}") };
+        let number = !value.is_empty() && value.chars().all(|c| c.is_ascii_digit() || c == '.' || c == '-');
+        let quoted = if number || value.starts_with('"') { value.to_owned() } else { format!("{value:?}") };
         self.apply(&format!("[{section}]\n{name} = {quoted}\n")).map(|_| ())
     }
 
@@ -272,15 +272,8 @@ impl Profile {
     #[must_use]
     pub fn pace(&self, latency: Duration) -> Pace {
         let character = self.framing.character(self.baud);
-        let mut pace = if self.strict {
-            Pace::strict(character, latency, self.overrun_limit)
-        } else {
-            Pace::free(character, latency, self.overrun_limit)
-        };
-        if let Some(window) = self.window {
-            pace.window = window;
-        }
-        pace
+        let kind = if self.strict { Pace::strict } else { Pace::free };
+        kind(character, latency, self.overrun_limit, self.window)
     }
 }
 
@@ -304,7 +297,7 @@ fn latency(link: &Section<'_>) -> Result<Option<Option<Duration>>, KeyError> {
 }
 
 /// Every key of a profile with its section.
-const KEYS: [(&str, &str); 15] = [
+const KEYS: [(&str, &str); 14] = [
     ("machine", "name"),
     ("link", "baud"),
     ("link", "framing"),
@@ -319,7 +312,6 @@ const KEYS: [(&str, &str); 15] = [
     ("tape", "leader"),
     ("tape", "trailer"),
     ("control", "buffer_bytes"),
-    ("protocol", "name"),
 ];
 
 #[cfg(test)]
@@ -362,6 +354,9 @@ mod tests {
         profile.set("pacing", "strict").unwrap();
         profile.set("link.baud", "9600").unwrap();
         assert!(profile.strict && profile.baud == 9600);
+        profile.set("framing", "7E1").unwrap();
+        profile.set("leader", "\"\"").unwrap();
+        assert_eq!((profile.framing.stop_bits, profile.tape.leader.as_str()), (1, ""));
         assert!(profile.set("bawd", "1").unwrap_err().help.unwrap().contains("baud"));
         assert!(profile.set("tape.baud", "1").is_err());
     }

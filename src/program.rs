@@ -17,8 +17,17 @@ use crate::rounding::Made;
 pub enum Line {
     /// A block.
     Block(Block),
-    /// A stop word; not counted as a block.
-    StopWord,
+    /// `D`: the control pauses and goes on. Not counted as a block.
+    Pause,
+    /// `DD` or `E`: the control ends the program. Not counted as a block.
+    End,
+}
+
+impl Line {
+    /// What a stop word says.
+    fn of_stop_word(word: &str) -> Self {
+        if word == "D" { Self::Pause } else { Self::End }
+    }
 }
 
 /// Why a program cannot go on.
@@ -65,8 +74,9 @@ impl Program for Generated {
         if self.stop_word.is_empty() {
             return Ok(None);
         }
-        text.extend_from_slice(std::mem::take(&mut self.stop_word).as_bytes());
-        Ok(Some(Line::StopWord))
+        let word = std::mem::take(&mut self.stop_word);
+        text.extend_from_slice(word.as_bytes());
+        Ok(Some(Line::of_stop_word(word)))
     }
 }
 
@@ -91,10 +101,61 @@ impl<R: BufRead + Send> Program for Read<R> {
             }
             Some(Item::StopWord(word)) => {
                 text.extend_from_slice(word.as_bytes());
-                Some(Line::StopWord)
+                Some(Line::of_stop_word(word))
             }
             None => None,
         })
+    }
+}
+
+/// A program whose blocks are counted.
+pub struct Counted {
+    program: Box<dyn Program>,
+    block: u64,
+}
+
+/// A line and the number of its block; a stop word has the number of the block before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbered {
+    /// The line.
+    pub line: Line,
+    /// The block's number, from 1.
+    pub block: u64,
+}
+
+impl Counted {
+    /// Counts a program from its first block.
+    #[must_use]
+    pub fn new(program: Box<dyn Program>) -> Self {
+        Self { program, block: 0 }
+    }
+
+    /// Blocks pulled so far.
+    #[must_use]
+    pub fn blocks(&self) -> u64 {
+        self.block
+    }
+
+    /// As [`Program::pull`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Program::pull`].
+    pub fn pull(&mut self, text: &mut Vec<u8>) -> Result<Option<Numbered>, ProgramError> {
+        let Some(line) = self.program.pull(text)? else { return Ok(None) };
+        self.block += u64::from(matches!(line, Line::Block(_)));
+        Ok(Some(Numbered { line, block: self.block }))
+    }
+}
+
+impl Numbered {
+    /// Whether the line goes out when block `first` goes first: it, and what comes after it.
+    #[must_use]
+    pub fn goes_out_from(&self, first: u64) -> bool {
+        match self.line {
+            Line::Block(_) => self.block >= first,
+            Line::Pause | Line::End => self.block + 1 >= first,
+        }
     }
 }
 
@@ -130,7 +191,7 @@ impl Segments {
         self.hasher.update(text);
         self.hasher.update(b"\n");
         match line {
-            Line::StopWord => None,
+            Line::Pause | Line::End => None,
             Line::Block(_) => {
                 self.blocks += 1;
                 ends_segment(self.blocks).then(|| self.cut())

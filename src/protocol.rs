@@ -19,8 +19,6 @@ use thiserror::Error;
 /// What an operator may say to a running job.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Command {
-    /// Begin without waiting for the control: its request came before the job was armed.
-    StartNow,
     /// Stop when the block in hand has been sent whole.
     StopAtBlock,
     /// Stop at once, in mid-block if need be.
@@ -70,13 +68,31 @@ pub enum Ending {
     },
 }
 
-/// A block of which the control has a part.
+/// A line of which the control has a part.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Torn {
-    /// The block.
-    pub block: u64,
+    /// What of the program it is.
+    pub line: TornLine,
     /// How many of its bytes were handed to the link.
     pub bytes: usize,
+}
+
+/// See [`Torn`].
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum TornLine {
+    /// This block.
+    Block(u64),
+    /// The stop word after this block.
+    StopWordAfter(u64),
+}
+
+/// What a program ends with.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum ProgramEnd {
+    /// A stop word, at which a control may stop reading.
+    StopWord,
+    /// A block: the control needs the trailer to know that this is the end.
+    Block,
 }
 
 /// Why a job failed on the line.
@@ -127,10 +143,11 @@ pub enum Phase {
 pub trait Protocol: Send {
     /// Whether the machine has room for another block: less than the window is waiting here and on the wire.
     fn wants_block(&self, now: Duration) -> bool;
-    /// Gives the next block: its number and the bytes of it that go on the line, end of block included.
+    /// Gives the next line: the number of its block and the bytes that go on the line, end of block included. A stop word
+    /// comes with the number of the block before it.
     fn offer_block(&mut self, number: u64, bytes: &[u8]);
-    /// Says that there are no more blocks.
-    fn finish(&mut self);
+    /// Says that there are no more lines, and what the last one was.
+    fn finish(&mut self, end: ProgramEnd);
 
     /// The control spoke.
     fn handle_received(&mut self, bytes: &[u8], now: Duration);
@@ -161,7 +178,9 @@ pub trait Protocol: Send {
 pub struct Tally {
     /// Bytes handed to the link, leader and trailer included.
     pub bytes: u64,
-    /// Time held by the control, ended holds only.
+    /// When the last of them was, and how long the sender had been held by then.
+    pub last_byte: Option<(Duration, Duration)>,
+    /// Time held by the control; a hold counts once it is over.
     pub held: Duration,
     /// Holds.
     pub holds: u64,

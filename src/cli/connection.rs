@@ -45,6 +45,16 @@ impl LineOptions {
         words
     }
 
+    /// As options of a command line.
+    pub(super) fn options(&self) -> Vec<(&'static str, String)> {
+        let mut options = Vec::new();
+        options.extend(self.protocol.iter().map(|v| ("--protocol", v.clone())));
+        options.extend(self.baud.iter().map(|v| ("--baud", v.to_string())));
+        options.extend(self.framing.iter().map(|v| ("--framing", v.clone())));
+        options.extend(self.set.iter().map(|v| ("--set", v.clone())));
+        options
+    }
+
     /// From words written down, what is given here winning over them.
     pub(super) fn or(mut self, words: &[String]) -> Self {
         let mut set = Vec::new();
@@ -64,17 +74,25 @@ impl LineOptions {
     }
 }
 
-/// A machine's profile with everything the command line changes, and whether anything was named at all.
-pub(super) fn profile(machine: Option<&str>, line: &LineOptions) -> Result<Profile, Failure> {
-    let name = machine.unwrap_or("generic-iso");
-    let file = machines::load(name)?;
-    if machine.is_none() {
-        eprintln!("no --machine is named; feeding as generic-iso:\n");
-        eprintln!("{}", crate::profile::GENERIC_ISO);
-    } else if !file.assumed.is_empty() {
-        eprintln!("{name}: not given, taken from generic-iso: {}", file.assumed.join(", "));
-    }
+/// A machine's profile with everything the command line changes, and what the file left to `generic-iso`.
+pub(super) fn resolve(machine: &str, line: &LineOptions) -> Result<(Profile, Vec<&'static str>), Failure> {
+    let file = machines::load(machine)?;
     let mut profile = file.profile;
+    for pair in &line.set {
+        let Some((key, value)) = pair.split_once('=') else {
+            return Err(Failure::new(Exit::Usage, format!("--set {pair} is not KEY=VALUE")).help(
+                "for example --set pacing=strict; `dripfeed machines show generic-iso` lists the keys",
+            ));
+        };
+        let name = key.trim().rsplit('.').next().unwrap_or_default();
+        if (name == "baud" && line.baud.is_some()) || (name == "framing" && line.framing.is_some()) {
+            return Err(Failure::new(
+                Exit::Usage,
+                format!("--{name} and --set {pair} say the same thing twice"),
+            ));
+        }
+        set(&mut profile, key.trim(), value.trim(), "--set")?;
+    }
     if let Some(baud) = line.baud {
         set(&mut profile, "baud", &baud.to_string(), "--baud")?;
     }
@@ -88,13 +106,17 @@ pub(super) fn profile(machine: Option<&str>, line: &LineOptions) -> Result<Profi
         }
         set(&mut profile, "framing", framing, "--framing")?;
     }
-    for pair in &line.set {
-        let Some((key, value)) = pair.split_once('=') else {
-            return Err(Failure::new(Exit::Usage, format!("--set {pair} is not KEY=VALUE")).help(
-                "for example --set pacing=strict; `dripfeed machines show generic-iso` lists the keys",
-            ));
-        };
-        set(&mut profile, key.trim(), value.trim(), "--set")?;
+    Ok((profile, file.assumed))
+}
+
+/// As [`resolve`], and says what was not stated: the whole of `generic-iso` when no machine is named.
+pub(super) fn profile(machine: Option<&str>, line: &LineOptions) -> Result<Profile, Failure> {
+    let name = machine.unwrap_or("generic-iso");
+    let (profile, assumed) = resolve(name, line)?;
+    if machine.is_none() {
+        say!("no --machine is named; feeding as generic-iso:\n\n{}", crate::profile::GENERIC_ISO);
+    } else if !assumed.is_empty() {
+        say!("{name}: not given, taken from generic-iso: {}", assumed.join(", "));
     }
     Ok(profile)
 }
@@ -143,23 +165,28 @@ impl Connection {
     fn say(&self, latency_source: &str) {
         let Profile { baud, framing, overrun_limit, .. } = self.profile;
         let Some(_) = self.pace.character else {
-            eprintln!(
-                "{}: not paced; bytes under way when the control says stop cannot be recalled",
-                self.port
-            );
+            say!("{}: not paced; bytes under way when the control says stop cannot be recalled", self.port);
             return;
         };
         let worst = self.pace.worst_overrun();
         let latency = self.pace.latency.as_secs_f64() * 1e3;
-        eprintln!("{}: {baud} baud {framing}, window {} bytes", self.port, self.pace.window);
-        eprintln!("receive latency {latency:.1} ms, {latency_source}");
+        say!("{}: {baud} baud {framing}, window {} bytes", self.port, self.pace.window);
+        say!("receive latency {latency:.1} ms, {latency_source}");
+        let spare =
+            self.pace.character.unwrap_or_default() * overrun_limit.saturating_sub(self.pace.window) as u32;
+        if self.pace.gaps.is_none() && worst <= overrun_limit && spare < SPARE {
+            say!(
+                "warning: the control's {overrun_limit} characters take {:.1} ms here; this system may be later than that to hear DC3, and no setting prevents it but a lower baud",
+                self.pace.character.unwrap_or_default().as_secs_f64() * 1e3 * overrun_limit as f64
+            );
+        }
         if self.pace.gaps.is_some() {
-            eprintln!(
+            say!(
                 "strict pacing: at most {worst} characters after DC3, by listening gaps; at most {:.0} % of the line's time is used",
                 100.0 * self.pace.best_utilisation()
             );
         } else if worst > overrun_limit {
-            eprintln!(
+            say!(
                 "warning: up to {worst} characters may follow the control's DC3, and it allows {overrun_limit}; lower the adapter's latency timer, the baud, or keep the rule with --set pacing=strict"
             );
         }
@@ -181,3 +208,6 @@ impl Connection {
 pub(super) fn profile_digest(profile: &Profile) -> String {
     blake3::hash(format!("{profile:?}").as_bytes()).to_hex().to_string()
 }
+
+/// Below this much time between DC3 and the alarm, a system that is not real-time may well be too late. A guess.
+const SPARE: Duration = Duration::from_millis(2);

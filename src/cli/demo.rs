@@ -61,11 +61,11 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     std::fs::create_dir_all(&directory).map_err(unusable)?;
 
     let prepared = Part::default().prepare().map_err(|error| Failure::gear(&error))?;
-    eprintln!("the clock gear of the 1990 paper: module 0.4 mm, 36 teeth, wire offset +0.07 mm");
+    say!("the clock gear of the 1990 paper: module 0.4 mm, 36 teeth, wire offset +0.07 mm");
     for warning in prepared.warnings() {
-        eprintln!("warning: {warning}");
+        say!("warning: {warning}");
     }
-    eprintln!("(the paper's own lead-in, from the gear's centre; a real punch wants a start hole outside)");
+    say!("(the paper's own lead-in, from the gear's centre; a real punch wants a start hole outside)");
 
     let (report, watch, seconds) = feed(&prepared, &directory)?;
     let mut verdict = compare(&prepared, &watch, report);
@@ -90,7 +90,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     } else {
         print(words(&verdict).as_bytes())?;
     }
-    eprintln!("pictures of what was cut: {} and {}", files[0].0.display(), files[1].0.display());
+    say!("pictures of what was cut: {} and {}", files[0].0.display(), files[1].0.display());
     judge(&verdict)
 }
 
@@ -128,7 +128,7 @@ fn feed(prepared: &Prepared, directory: &Path) -> Result<(Report, Watch, f64), F
         Ending::Done { .. } => Ok((report, watch, seconds)),
         Ending::Stopped { .. } | Ending::Failed { .. } => {
             // The demo's job is not kept, so there is nothing to go on with.
-            verdict::conclude(outcome, "demo", "dripfeed demo", "demo").map(|()| (report, watch, seconds))
+            verdict::conclude(outcome, "demo", None, "demo").map(|()| (report, watch, seconds))
         }
     }
 }
@@ -166,7 +166,8 @@ fn send(prepared: &Prepared, address: &str, directory: &Path) -> Result<crate::l
         job: job.job,
         from_block: 1,
         report: None,
-        resume: String::new(),
+        is_resumed: false,
+        resume: None,
     };
     let outcome = feeding.feed();
     let _ = std::fs::remove_file(path);
@@ -223,15 +224,16 @@ impl Observer for &mut Watch {
 
 /// Compares where the control's blocks ended with the theoretical nodes.
 fn compare(prepared: &Prepared, watch: &Watch, report: Report) -> Verdict {
-    let (mut max_node_error_um, mut closure_um, mut opened) = (0.0f64, f64::INFINITY, watch.origin);
+    let (mut max_node_error_um, mut closure_um, mut opened) = (0.0f64, f64::INFINITY, None);
     let mut before = watch.origin;
     for (made, &end) in prepared.blocks().zip(&watch.ends) {
         if made.role == Role::Opening {
-            opened = before;
+            opened = opened.or(Some(before));
         }
         if made.at_node {
             max_node_error_um = max_node_error_um.max(end.distance_um(made.target));
-            if made.role == Role::Closing {
+            if let (Role::Closing, Some(opened)) = (made.role, opened) {
+                let opened: Position = opened;
                 closure_um = end.distance_um(Point::new(opened.x.millimetres(), opened.y.millimetres()));
             }
         }

@@ -67,8 +67,8 @@ impl Failure {
         self.message = format!("{words}: {}", self.message);
     }
 
-    pub(super) fn resume_with(mut self, command: String) -> Self {
-        self.resume = Some(command);
+    pub(super) fn resume_with(mut self, command: Option<String>) -> Self {
+        self.resume = command;
         self
     }
 
@@ -176,18 +176,17 @@ impl Diagnostic for Failure {
 impl SourceCode for Failure {
     fn read_span<'a>(
         &'a self,
-        span: &SourceSpan,
+        _span: &SourceSpan,
         _before: usize,
         _after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
         let Some((file, place)) = &self.place else { return Err(MietteError::OutOfBounds) };
-        let column = if span.offset() == 0 { 0 } else { place.column as usize - 1 - place.caret };
         Ok(Box::new(MietteSpanContents::new_named(
             file.clone(),
             place.excerpt.as_bytes(),
             SourceSpan::from((0, place.excerpt.len())),
             place.line as usize - 1,
-            column,
+            place.column as usize - 1,
             1,
         )))
     }

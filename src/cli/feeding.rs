@@ -16,7 +16,7 @@ use crate::journal::Record;
 use crate::journal::writer::Journal;
 use crate::link::Link;
 use crate::link::feed::{self, Outcome, Shared, Snapshot};
-use crate::program::{Line, ProgramError};
+use crate::program::ProgramError;
 use crate::protocol::dc_codes::{DcCodes, Settings};
 use crate::protocol::{Protocol, Tally};
 
@@ -28,20 +28,13 @@ pub(super) fn time_of_day() -> String {
 
 /// Prints the program text from a block on, as it would be sent.
 pub(super) fn dry_run(source: &Source, from_block: u64) -> Result<(), Failure> {
-    let mut program = source.program()?;
-    let (mut out, mut text, mut block) = (std::io::stdout().lock(), Vec::new(), 0);
+    let mut program = source.counted()?;
+    let (mut out, mut text) = (std::io::stdout().lock(), Vec::new());
     loop {
         let start = text.len();
         match program.pull(&mut text) {
-            Ok(Some(line)) => {
-                block += u64::from(matches!(line, Line::Block(_)));
-                let next = if line == Line::StopWord { block + 1 } else { block };
-                if next < from_block {
-                    text.truncate(start);
-                } else {
-                    text.push(b'\n');
-                }
-            }
+            Ok(Some(numbered)) if numbered.goes_out_from(from_block) => text.push(b'\n'),
+            Ok(Some(_)) => text.truncate(start),
             Ok(None) => break,
             Err(ProgramError::Read(error)) => {
                 let _ = out.write_all(&text[..start]);
@@ -53,7 +46,20 @@ pub(super) fn dry_run(source: &Source, from_block: u64) -> Result<(), Failure> {
             text.clear();
         }
     }
-    out.write_all(&text).and_then(|()| out.flush()).map_err(Failure::output)
+    out.write_all(&text).and_then(|()| out.flush()).map_err(Failure::output)?;
+    if program.blocks() == 0 {
+        return Err(Failure::new(Exit::Program, format!("{} holds no block", source.path)));
+    }
+    if program.blocks() + 1 < from_block {
+        return Err(no_such_block(from_block, program.blocks()));
+    }
+    Ok(())
+}
+
+/// A block was named that the program does not have.
+pub(super) fn no_such_block(block: u64, blocks: u64) -> Failure {
+    Failure::new(Exit::Usage, format!("block {block} does not exist: the program has {blocks} blocks"))
+        .help("blocks count from 1 as sent; the lead-in is block 1")
 }
 
 /// A job ready to be fed.
@@ -65,8 +71,10 @@ pub(super) struct Feeding<'a> {
     pub(super) job: String,
     pub(super) from_block: u64,
     pub(super) report: Option<PathBuf>,
-    /// A `dripfeed resume …` line up to the block number.
-    pub(super) resume: String,
+    /// Whether the job was begun before: a torn line may stand in the control.
+    pub(super) is_resumed: bool,
+    /// A `dripfeed resume …` line up to the block number; none when there is nothing to go on with.
+    pub(super) resume: Option<String>,
 }
 
 impl Feeding<'_> {
@@ -74,7 +82,7 @@ impl Feeding<'_> {
     pub(super) fn run(self) -> Result<(), Failure> {
         let (job, resume, source) = (self.job.clone(), self.resume.clone(), self.source.path.clone());
         let outcome = self.feed()?;
-        verdict::conclude(outcome, &job, &resume, &source)
+        verdict::conclude(outcome, &job, resume.as_deref(), &source)
     }
 
     /// Feeds to the end, whatever that is.
@@ -86,13 +94,21 @@ impl Feeding<'_> {
         let encode = |line: Result<Vec<u8>, _>| {
             line.map_err(|error: crate::tape::Unencodable| Failure::new(Exit::Profile, error.to_string()))
         };
+        let mut leader = encode(tape.leader())?;
+        if self.is_resumed {
+            // An end of block first: it makes the control drop what it may have of a torn line.
+            let mut end = Vec::new();
+            encode(tape.encode(b"", &mut end).map(|()| end))?
+                .into_iter()
+                .rev()
+                .for_each(|byte| leader.insert(0, byte));
+        }
         let settings = Settings {
             pace: self.line.pace,
             wait_for_start: self.line.profile.wait_for_start,
             start_timeout: self.line.profile.start_timeout,
-            leader: encode(tape.leader())?,
+            leader,
             trailer: encode(tape.trailer())?,
-            ends_with_stop_word: self.source.ends_with_stop_word,
         };
         let around = settings.leader.len() + settings.trailer.len();
         let total = self.total(around as u64, tape.end_of_block.len() as u64);
@@ -113,7 +129,7 @@ impl Feeding<'_> {
             tape,
             from_block: self.from_block,
             journal: self.journal,
-            paced: self.line.pace.character.is_some(),
+            one_by_one: self.line.pace.character.is_some() || self.source.is_stream(),
         };
         let mut screen = Screen::new(total, self.line.pace.character);
         let link = &mut self.link;
@@ -150,12 +166,18 @@ impl Feeding<'_> {
         let journal_error = journal.close();
         if let Some(path) = &self.report {
             let report = verdict::report(&outcome, self.from_block, self.line.pace.character);
-            std::fs::write(path, format!("{report}\n")).map_err(|error| {
-                Failure::new(Exit::Ours, format!("cannot write {}: {error}", path.display()))
-            })?;
+            if let Err(error) = std::fs::write(
+                path,
+                format!(
+                    "{report}
+"
+                ),
+            ) {
+                say!("warning: the report {} cannot be written: {error}", path.display());
+            }
         }
         if let Some(error) = journal_error {
-            eprintln!("warning: resume is not guaranteed: the journal could not be written ({error})");
+            say!("warning: resume is not guaranteed: the journal could not be written ({error})");
         }
         Ok(outcome)
     }
@@ -164,22 +186,20 @@ impl Feeding<'_> {
     fn total(&self, around: u64, end_of_block: u64) -> Total {
         let total = Total::default();
         if let Some(size) = self.source.size.filter(|_| self.from_block == 1) {
-            let lines = size.blocks + u64::from(self.source.ends_with_stop_word);
             total.blocks.store(size.blocks, Ordering::Relaxed);
-            total.bytes.store(size.bytes + lines * (end_of_block - 1) + around, Ordering::Relaxed);
+            total.bytes.store(size.bytes + size.lines * end_of_block + around, Ordering::Relaxed);
         } else if self.from_block == 1
             && self.source.prepared().is_some_and(|p| p.element_count() <= COUNT_ELEMENTS_MAX)
-            && let Ok(mut program) = self.source.program()
+            && let Ok(mut program) = self.source.counted()
         {
             let counted = total.clone();
             let _ = std::thread::Builder::new().name("count".to_owned()).spawn(move || {
-                let (mut text, mut blocks, mut bytes) = (Vec::new(), 0, around);
-                while let Ok(Some(line)) = program.pull(&mut text) {
-                    blocks += u64::from(matches!(line, Line::Block(_)));
+                let (mut text, mut bytes) = (Vec::new(), around);
+                while let Ok(Some(_)) = program.pull(&mut text) {
                     bytes += text.len() as u64 + end_of_block;
                     text.clear();
                 }
-                counted.blocks.store(blocks, Ordering::Relaxed);
+                counted.blocks.store(program.blocks(), Ordering::Relaxed);
                 counted.bytes.store(bytes, Ordering::Relaxed);
             });
         }

@@ -23,6 +23,7 @@ use crate::shapes::cycloid_gear::{LeadIn, Trim};
 
 /// Print a part's program: blocks made on demand from a few numbers
 #[derive(Args, Debug)]
+#[command(allow_negative_numbers = true)]
 pub(super) struct Options {
     /// `gear`, or a part file (FILE.toml)
     #[arg(required_unless_present = "explain")]
@@ -60,7 +61,7 @@ struct Gear {
     #[arg(long, value_name = "MM")]
     tip_radius: Option<f64>,
     /// Wire radius + spark gap: + outside (punch), - inside (die) [default: 0.07]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM")]
     offset: Option<f64>,
     /// Direction of cut [default: cw]
     #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(DIRECTIONS.map(|(w, _)| w)))]
@@ -102,14 +103,18 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
                 Failure::new(Exit::Usage, message).help(format!("change {what}, or leave the option out"))
             );
         }
-        source::part_file(&what)?.part
+        if !what.contains(['.', '/', '\\']) && !std::path::Path::new(&what).exists() {
+            let failure = Failure::new(Exit::Usage, format!("there is no shape `{what}`"));
+            return Err(failure.help(crate::keys::nearest(&what, &["gear"]).unwrap_or_default()));
+        }
+        source::part_file(&what)?.0.part
     };
     let prepared = part.prepare().map_err(|error| Failure::gear(&error))?;
     for warning in prepared.warnings() {
-        eprintln!("warning: {warning}");
+        say!("warning: {warning}");
     }
     let audit = write(&prepared, std::io::stdout().lock())?;
-    eprint!("{}", account(&audit, &prepared));
+    say!("{}", account(&audit, &prepared).trim_end());
     Ok(())
 }
 
@@ -176,13 +181,16 @@ impl Gear {
 
 fn lead_in(text: &str) -> Result<LeadIn, Failure> {
     let point = text.split_once(',').and_then(|(x, y)| {
-        let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| v.is_finite() && v.abs() <= 100_000.0);
-        Some((number(x)?, number(y)?))
+        let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+        start_hole(number(x)?, number(y)?)
     });
     match point {
-        Some((x, y)) => Ok(start_hole(x, y)),
-        None => Err(Failure::new(Exit::Usage, format!("--lead-in {text} is not centre, none, or X,Y in mm"))
-            .help("for example --lead-in 0,-12.5")),
+        Some(lead_in) => Ok(lead_in),
+        None => Err(Failure::new(
+            Exit::Usage,
+            format!("--lead-in {text} is not centre, none, or X,Y in mm within 100 m"),
+        )
+        .help("for example --lead-in 0,-12.5")),
     }
 }
 

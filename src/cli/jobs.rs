@@ -8,7 +8,7 @@ use serde_json::json;
 use super::failure::{Exit, Failure};
 use super::{print, print_json};
 use crate::journal::history::History;
-use crate::journal::writer;
+use crate::journal::writer::{self, JournalError};
 
 /// What was sent, how far it got, what can be resumed
 #[derive(Args, Debug)]
@@ -47,27 +47,27 @@ pub(super) fn directory(given: Option<&Path>) -> Result<PathBuf, Failure> {
     })
 }
 
-/// Every journal of a directory, newest first; those that cannot be read are said and left out.
-pub(super) fn all(directory: &Path) -> Result<Vec<History>, Failure> {
+/// Every journal of a directory, newest first, and what is wrong with those that cannot be read.
+fn readable(directory: &Path) -> Result<(Vec<History>, Vec<JournalError>), Failure> {
     let entries = match std::fs::read_dir(directory) {
         Ok(entries) => entries,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok((Vec::new(), Vec::new())),
         Err(error) => {
             return Err(Failure::new(Exit::Ours, format!("cannot read {}: {error}", directory.display())));
         }
     };
-    let mut histories = Vec::new();
+    let (mut histories, mut damaged) = (Vec::new(), Vec::new());
     for path in entries.flatten().map(|entry| entry.path()) {
         if path.extension().is_none_or(|e| e != "journal") {
             continue;
         }
         match writer::read(&path) {
             Ok(history) => histories.push(history),
-            Err(error) => eprintln!("warning: {error}"),
+            Err(error) => damaged.push(error),
         }
     }
     histories.sort_by(|a, b| (&b.job.started, &b.job.job).cmp(&(&a.job.started, &a.job.job)));
-    Ok(histories)
+    Ok((histories, damaged))
 }
 
 /// The state of a job in a word, `running` while a process holds its journal.
@@ -93,7 +93,10 @@ fn summary(directory: &Path, history: &History) -> serde_json::Value {
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let directory = directory(options.journal.as_deref())?;
     let Some(Action::Show { job }) = &options.action else {
-        let histories = all(&directory)?;
+        let (histories, damaged) = readable(&directory)?;
+        for error in &damaged {
+            say!("warning: {error}");
+        }
         if options.json {
             return print_json(&histories.iter().map(|h| summary(&directory, h)).collect());
         }
@@ -130,7 +133,12 @@ pub(super) fn find(directory: &Path, job: Option<&str>) -> Result<History, Failu
         }
         return writer::read(&path).map_err(|error| Failure::journal(&error));
     }
-    all(directory)?.into_iter().find(|history| history.state() != "done").ok_or_else(|| {
+    let (histories, damaged) = readable(directory)?;
+    if let Some(error) = damaged.first() {
+        // It may be the newest one; which job is meant is not for us to guess.
+        return Err(Failure::journal(error));
+    }
+    histories.into_iter().find(|history| history.state() != "done").ok_or_else(|| {
         Failure::new(Exit::Usage, format!("there is no job to resume in {}", directory.display()))
             .help("`dripfeed jobs` lists all of them")
     })

@@ -23,8 +23,8 @@ pub(super) fn answer(question: &str) -> Result<String, Failure> {
         return Err(Failure::new(Exit::Usage, format!("there is no terminal to ask on: {question}"))
             .help("answer on the command line with --yes; `resume` wants --from-block N with it"));
     };
-    eprint!("{question}");
-    let _ = std::io::stderr().flush();
+    let mut screen = std::io::stderr();
+    let _ = write!(screen, "{question}").and_then(|()| screen.flush());
     let mut line = String::new();
     BufReader::new(terminal)
         .read_line(&mut line)

@@ -1,8 +1,8 @@
 //! `dripfeed resume [JOB] --from-block N`: goes on with a job that broke off.
 //!
 //! ```text
-//! $ dripfeed resume gear-20260101T120000 --from-block 118
-//! job gear-20260101T120000 of /home/me/gear.toml: broken-off
+//! $ dripfeed resume gear-20260101120000 --from-block 118
+//! job gear-20260101120000 of /home/me/gear.toml: broken-off
 //! handed over whole: up to block 120; may have been sent: up to block 134; accepted: not known
 //! block 118 begins 3.213 mm, -5.871 mm from where the program began
 //! ```
@@ -11,7 +11,7 @@
 //! source, compared with the journal's digests, and sent from block N. Nothing is sent that was not shown, and nothing
 //! starts without a yes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -22,17 +22,12 @@ use super::jobs;
 use super::question;
 use super::send::quoted;
 use super::source::{Kind, Source};
-use crate::formats::three_b::Block;
-use crate::interpolator::Model;
+use super::spot;
 use crate::journal::Record;
 use crate::journal::history::History;
 use crate::journal::resume::{Answer, Plan, Refusal, decide};
 use crate::journal::writer::{self, Writer};
 use crate::link::Port;
-use crate::part::Prepared;
-use crate::program::{Line, ProgramError};
-use crate::rounding::Aim;
-use crate::units::Position;
 
 /// Go on with a job that broke off, from a block the operator names
 #[derive(Args, Debug)]
@@ -86,21 +81,34 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
             format!("{word} can be read only once; name a file with --source"),
         ));
     }
-    let line = options.line.clone().or(&job.settings);
-    let profile = connection::profile(Some(&job.machine), &line)?;
-    if options.line.words().is_empty() && connection::profile_digest(&profile) != job.machine_digest {
+    // The profile must be what it was; only what is changed on this command line is meant to change.
+    let recorded = LineOptions::default().or(&job.settings);
+    let (then, _) = connection::resolve(&job.machine, &recorded)?;
+    if connection::profile_digest(&then) != job.machine_digest {
         return Err(Failure::new(
             Exit::Profile,
             format!("the machine profile {} has changed since the job was sent", job.machine),
         )
-        .help(
-            "give the changed values on the command line (--baud, --framing, --set), so that they are meant",
-        ));
+        .help("put the old profile back, or start anew with `dripfeed send`"));
     }
+    let line = options.line.clone().or(&job.settings);
+    let (profile, _) = connection::resolve(&job.machine, &line)?;
 
-    let program = source.compare(&history.segments)?;
-    eprint!("{}", account(&history));
-    let discards_partial = !profile.tape.end_of_block.is_empty() && !profile.tape.leader.is_empty();
+    // The journal is held from here on, so that what is decided on stays true.
+    let (file, history) = if options.dry_run {
+        (None, history)
+    } else {
+        let (file, history) =
+            writer::reopen(&directory, &job.job).map_err(|error| Failure::journal(&error))?;
+        (Some(file), history)
+    };
+    let program = source.compare(&history)?;
+    say!("{}", account(&history).trim_end());
+    say!(
+        "the profile takes the control's buffer to hold up to {} bytes not yet executed",
+        profile.buffer_bytes
+    );
+    let discards_partial = !profile.tape.end_of_block.is_empty();
     let mut answer = Answer { from_block: options.from_block, control_cleared: options.control_cleared };
     let mut decision = decide(&history, &program, answer, discards_partial);
     if let Err(Refusal::AskBlock { .. }) = decision {
@@ -113,33 +121,24 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         decision = decide(&history, &program, answer, discards_partial);
     }
     let Plan { from_block, repeated } = decision.map_err(|refusal| refused(&refusal))?;
-    if options.dry_run {
-        return feeding::dry_run(&source, from_block);
-    }
-    eprint!("{}", spot(&source, from_block, program.blocks)?);
+    let Some(file) = file else { return feeding::dry_run(&source, from_block) };
+    say!("{}", spot::around(&source, from_block)?.trim_end());
     if repeated > 0 {
-        eprintln!("{repeated} blocks that may have been sent before go out again");
+        say!("{repeated} blocks that may have been sent before go out again");
     }
 
-    let port = match options.port {
-        Some(port) => port,
+    let port = match &options.port {
+        Some(port) => port.clone(),
         None => Port::parse(&job.port).map_err(|error| Failure::new(Exit::Usage, error))?,
     };
     question::ask(&format!("Does the wire stand where block {from_block} begins? Go on?"), options.yes)?;
+    let resume = options.command(&job.job, &directory);
     let connection = Connection::plan(port, profile, &line);
     let link = connection.open()?;
-    let (file, _) = writer::reopen(&directory, &job.job).map_err(|error| Failure::journal(&error))?;
     let writer = Writer::start().map_err(|error| Failure::new(Exit::Ours, error.to_string()))?;
     let journal = writer.attach(Box::new(file), from_block - 1);
-    journal.note(Record::Resumed {
-        block: from_block,
-        at: feeding::time_of_day(),
-        port: connection.port.to_string(),
-    });
-    let mut resume = format!("dripfeed resume {}", job.job);
-    if options.journal.is_some() {
-        resume.push_str(&format!(" --journal {}", quoted(&directory.display().to_string())));
-    }
+    let (at, port) = (feeding::time_of_day(), connection.port.to_string());
+    journal.note(Record::Resumed { block: from_block, at, port });
     Feeding {
         source: &source,
         line: connection,
@@ -148,9 +147,31 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         job: job.job,
         from_block,
         report: options.report,
-        resume,
+        is_resumed: true,
+        resume: Some(resume),
     }
     .run()
+}
+
+impl Options {
+    /// The command that goes on from here, up to the block number.
+    fn command(&self, job: &str, directory: &Path) -> String {
+        let mut command = format!("dripfeed resume {job}");
+        let mut option = |name: &str, value: &str| command.push_str(&format!(" {name} {}", quoted(value)));
+        if self.journal.is_some() {
+            option("--journal", &directory.display().to_string());
+        }
+        if let Some(source) = &self.source {
+            option("--source", source);
+        }
+        if let Some(port) = &self.port {
+            option("--port", &port.to_string());
+        }
+        for (name, value) in self.line.options() {
+            option(name, &value);
+        }
+        command.trim_end().to_owned()
+    }
 }
 
 fn refused(refusal: &Refusal) -> Failure {
@@ -159,6 +180,9 @@ fn refused(refusal: &Refusal) -> Failure {
             Exit::Program,
             "put the old source back, name it with --source, or start anew with `dripfeed send`",
         ),
+        Refusal::Unvouched { .. } => {
+            (Exit::Program, "put the old source back, or start anew with `dripfeed send`")
+        }
         Refusal::NoSuchBlock { .. } => (Exit::Usage, "blocks count from 1 as sent, the lead-in is block 1"),
         Refusal::WouldSkip { .. } => {
             (Exit::Usage, "name the block after the last one that the control executed")
@@ -184,62 +208,14 @@ fn account(history: &History) -> String {
     );
     match &history.ended {
         Some(ended) if ended.torn_bytes > 0 => text.push_str(&format!(
-            "block {} is torn: {} bytes of it were sent; the leader's end of block makes the control drop them\n",
+            "block {} is torn: {} bytes of it were sent; the end of block that goes first makes the control drop them\n",
             ended.block + 1,
             ended.torn_bytes
         )),
         None => text.push_str(
-            "the job broke off: a part of a block may stand in the control; the leader's end of block makes it drop that\n",
+            "the job broke off: a part of a block may stand in the control; the end of block that goes first makes it drop that\n",
         ),
         Some(_) => {}
     }
     text
 }
-
-/// The text around a block and where the wire stands when it begins.
-fn spot(source: &Source, from_block: u64, blocks: u64) -> Result<String, Failure> {
-    let model = source.prepared().map_or(Model::Rotated, reference_model);
-    let mut program = source.program()?;
-    let (mut text, mut lines, mut block, mut stands) = (Vec::new(), String::new(), 0u64, Position::default());
-    let first_shown = from_block.saturating_sub(SHOWN_BEFORE);
-    while block <= from_block + SHOWN_AFTER {
-        text.clear();
-        let made: Block = match program.pull(&mut text) {
-            Ok(Some(Line::Block(made))) => made,
-            Ok(Some(Line::StopWord)) => continue,
-            Ok(None) => break,
-            Err(ProgramError::Read(error)) => return Err(Failure::read(&source.path, error)),
-        };
-        block += 1;
-        if block < from_block {
-            stands += model
-                .displacement(&made)
-                .map_err(|fault| Failure::new(Exit::Program, format!("block {block}: {fault}")))?;
-        }
-        if block >= first_shown {
-            let mark = if block == from_block { '>' } else { ' ' };
-            lines.push_str(&format!("{mark} {block:>8}  {}\n", String::from_utf8_lossy(&text)));
-        }
-    }
-    if from_block > blocks {
-        lines.push_str(&format!("> after block {blocks} only the stop word is left\n"));
-    }
-    lines.push_str(&format!(
-        "block {from_block} begins {:.3} mm, {:.3} mm from where the program began (by the {} model)\n",
-        stands.x.millimetres(),
-        stands.y.millimetres(),
-        model.name()
-    ));
-    Ok(lines)
-}
-
-/// The model positions are told by; one that serves every control agrees with all.
-fn reference_model(prepared: &Prepared) -> Model {
-    match prepared.part().aim {
-        Aim::One(model) => model,
-        Aim::Any => Model::Rotated,
-    }
-}
-
-const SHOWN_BEFORE: u64 = 2;
-const SHOWN_AFTER: u64 = 2;

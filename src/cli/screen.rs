@@ -75,7 +75,10 @@ impl Screen {
         let bytes = self.total.bytes.load(Ordering::Relaxed);
         let sent = snapshot.tally.bytes;
         // What matters most stands first: a terminal of 80 columns cuts the end off.
-        let mut line = format!("block {}", snapshot.block);
+        let stopping = snapshot.stopping && snapshot.phase != Phase::Ended;
+        let mut line =
+            String::from(if stopping { "stopping after this block, Ctrl-C again: at once; " } else { "" });
+        line.push_str(&format!("block {}", snapshot.block));
         if blocks > 0 {
             line.push_str(&format!("/{blocks}"));
         }
@@ -103,7 +106,7 @@ fn state_words(snapshot: &Snapshot, with_time: bool) -> String {
     let since = |from: Duration| {
         if with_time { format!(" for {}", clock(snapshot.now.saturating_sub(from))) } else { String::new() }
     };
-    let mut words = match snapshot.phase {
+    match snapshot.phase {
         Phase::AwaitingStart { since: from } => {
             format!("waiting for the control to ask (DC1){}", since(from))
         }
@@ -112,11 +115,7 @@ fn state_words(snapshot: &Snapshot, with_time: bool) -> String {
         Phase::Draining => "the last bytes are on the line".to_owned(),
         Phase::Lingering { .. } => "all blocks sent; the control may still ask for the trailer".to_owned(),
         Phase::Ended => "ended".to_owned(),
-    };
-    if snapshot.stopping && snapshot.phase != Phase::Ended {
-        words.push_str("; stopping at the block's end, Ctrl-C again: at once");
     }
-    words
 }
 
 /// Hours, minutes, seconds.

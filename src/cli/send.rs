@@ -20,10 +20,12 @@ use super::feeding::{self, Feeding};
 use super::jobs;
 use super::question;
 use super::source::{Kind, Source};
+use super::spot;
 use crate::journal::Job;
 use crate::journal::writer::{self, Writer};
 use crate::link::Port;
 use crate::part::Warning;
+use crate::program::ProgramError;
 
 /// Feed a program to a control, block by block, as it asks
 #[derive(Args, Debug)]
@@ -62,16 +64,11 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     let source = Source::open(&options.source, options.from)?;
     let warnings = source.prepared().map_or(&[][..], |prepared| prepared.warnings());
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        say!("warning: {warning}");
     }
     let from_block = options.from_block.unwrap_or(1);
-    if let Some(size) = source.size
-        && from_block > size.blocks
-    {
-        return Err(Failure::new(
-            Exit::Usage,
-            format!("block {from_block} does not exist: the program has {} blocks", size.blocks),
-        ));
+    if from_block > 1 && !source.is_stream() {
+        check_block(&source, from_block)?;
     }
     if options.dry_run {
         return feeding::dry_run(&source, from_block);
@@ -85,9 +82,11 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         question::ask("The lead-in will slit the part that is kept. Send it all the same?", options.yes)?;
     }
     if from_block > 1 {
+        if !source.is_stream() {
+            say!("{}", spot::around(&source, from_block)?.trim_end());
+        }
         let question = format!(
-            "Block {from_block} goes first and blocks 1 to {} are not sent: 3B is incremental, so the wire must stand where block {from_block} begins. Go on?",
-            from_block - 1
+            "Block {from_block} goes first, those before it are not sent, and the wire must stand where it begins. Go on?"
         );
         question::ask(&question, options.yes)?;
     }
@@ -116,7 +115,11 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     if options.journal.is_some() {
         resume.push_str(&format!(" --journal {}", quoted(&directory.display().to_string())));
     }
-    eprintln!("job {}", job.job);
+    if source.path == "-" {
+        // What came from standard input cannot be made again; the operator names where it is kept.
+        resume.push_str(" --source FILE");
+    }
+    say!("job {}", job.job);
     let journal = writer.attach(Box::new(file), from_block - 1);
     Feeding {
         source: &source,
@@ -126,9 +129,24 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         job: job.job,
         from_block,
         report: options.report,
-        resume,
+        is_resumed: false,
+        resume: Some(resume),
     }
     .run()
+}
+
+/// Checks that the program has the block that is to go first.
+fn check_block(source: &Source, from_block: u64) -> Result<(), Failure> {
+    let (mut program, mut text) = (source.counted()?, Vec::new());
+    while program.blocks() < from_block {
+        text.clear();
+        match program.pull(&mut text) {
+            Ok(Some(_)) => {}
+            Ok(None) => return Err(feeding::no_such_block(from_block, program.blocks())),
+            Err(ProgramError::Read(error)) => return Err(Failure::read(&source.path, error)),
+        }
+    }
+    Ok(())
 }
 
 /// Creates the journal under the first free name: source, time, and a number if need be.

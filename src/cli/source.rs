@@ -12,9 +12,11 @@ use std::time::SystemTime;
 use clap::ValueEnum;
 
 use super::failure::{Exit, Failure};
+use crate::journal::history::History;
+use crate::journal::resume;
 use crate::part::Prepared;
 use crate::part::file::PartFile;
-use crate::program::{self, Generated, Line, Program, Segment, Segments};
+use crate::program::{self, Counted, Generated, Line, Program, Segment, Segments};
 
 /// What a source is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
@@ -53,8 +55,6 @@ pub(super) struct Source {
     pub(super) digest: String,
     /// Blocks and bytes of text, where a check has counted them.
     pub(super) size: Option<Size>,
-    /// Whether the program ends with a stop word, as far as is known.
-    pub(super) ends_with_stop_word: bool,
     body: Body,
 }
 
@@ -62,7 +62,9 @@ pub(super) struct Source {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Size {
     pub(super) blocks: u64,
-    /// Text, one LF a line.
+    /// Blocks and stop words.
+    pub(super) lines: u64,
+    /// Text without ends of block.
     pub(super) bytes: u64,
 }
 
@@ -82,14 +84,15 @@ struct Stamp {
     digest: blake3::Hash,
 }
 
-/// Reads a part file and says what it left to default.
-pub(super) fn part_file(path: &str) -> Result<PartFile, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+/// Reads a part file and says what it left to default; with the digest of its text.
+pub(super) fn part_file(path: &str) -> Result<(PartFile, blake3::Hash), Failure> {
+    let text = if path == "-" { io::read_to_string(io::stdin()) } else { std::fs::read_to_string(path) };
+    let text = text.map_err(|error| unreadable(path, &error))?;
     let file = PartFile::parse(&text).map_err(|error| Failure::keys(Exit::Program, path, error))?;
     if !file.assumed.is_empty() {
-        eprintln!("{path}: not given, taken from the 1990 paper's run: {}", file.assumed.join(", "));
+        say!("{path}: not given, taken from the 1990 paper's run: {}", file.assumed.join(", "));
     }
-    Ok(file)
+    Ok((file, blake3::hash(text.as_bytes())))
 }
 
 fn unreadable(path: &str, error: &io::Error) -> Failure {
@@ -107,9 +110,7 @@ impl Source {
         if word == "-" {
             return match from {
                 Some(Kind::ThreeB) => Ok(Self::stream(word)),
-                Some(Kind::Part) => {
-                    Err(Failure::new(Exit::Usage, "a part file is read from a file, not from standard input"))
-                }
+                Some(Kind::Part) => Self::part("-", Path::new("-")),
                 None => {
                     Err(Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
                         .help("for example `--from 3b`"))
@@ -120,7 +121,7 @@ impl Source {
         if metadata.is_dir() {
             return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program")));
         }
-        let kind = match from.or_else(|| kind_of(word)) {
+        let kind = match from.or_else(|| kind_of(word, metadata.is_file())) {
             Some(kind) => kind,
             None => {
                 return Err(Failure::new(
@@ -146,35 +147,23 @@ impl Source {
             kind: Kind::Part,
             digest: String::new(),
             size: None,
-            ends_with_stop_word: !prepared.part().stop_word.text().is_empty(),
             body: Body::Part(Box::new(prepared)),
         }
     }
 
     fn stream(path: &str) -> Self {
         let path = path.to_owned();
-        Self {
-            path,
-            kind: Kind::ThreeB,
-            digest: String::new(),
-            size: None,
-            ends_with_stop_word: false,
-            body: Body::Stream,
-        }
+        Self { path, kind: Kind::ThreeB, digest: String::new(), size: None, body: Body::Stream }
     }
 
     fn part(word: &str, path: &Path) -> Result<Self, Failure> {
-        let file = part_file(word)?;
-        let digest = std::fs::read(path)
-            .map(|bytes| blake3::hash(&bytes))
-            .map_err(|error| unreadable(word, &error))?;
+        let (file, digest) = part_file(word)?;
         let prepared = file.part.prepare().map_err(|error| Failure::gear(&error))?;
         Ok(Self {
             path: path.display().to_string(),
             kind: Kind::Part,
             digest: digest.to_hex().to_string(),
             size: None,
-            ends_with_stop_word: !prepared.part().stop_word.text().is_empty(),
             body: Body::Part(Box::new(prepared)),
         })
     }
@@ -185,14 +174,14 @@ impl Source {
         let metadata = file.metadata().map_err(|error| unreadable(word, &error))?;
         let mut hashing = Hashing { file, hasher: blake3::Hasher::new(), bytes: 0 };
         let mut reader = program::Read::new(BufReader::with_capacity(READ_BUFFER, &mut hashing));
-        let (mut size, mut text, mut last) = (Size { blocks: 0, bytes: 0 }, Vec::new(), None);
+        let (mut size, mut text) = (Size { blocks: 0, lines: 0, bytes: 0 }, Vec::new());
         loop {
             text.clear();
             match reader.pull(&mut text) {
                 Ok(Some(line)) => {
                     size.blocks += u64::from(matches!(line, Line::Block(_)));
-                    size.bytes += text.len() as u64 + 1;
-                    last = Some(line);
+                    size.lines += 1;
+                    size.bytes += text.len() as u64;
                 }
                 Ok(None) => break,
                 Err(program::ProgramError::Read(error)) => return Err(Failure::read(word, error)),
@@ -210,7 +199,6 @@ impl Source {
             kind: Kind::ThreeB,
             digest: digest.to_hex().to_string(),
             size: Some(size),
-            ends_with_stop_word: last == Some(Line::StopWord),
             body: Body::File(stamp),
         })
     }
@@ -228,6 +216,11 @@ impl Source {
         matches!(self.body, Body::Stream)
     }
 
+    /// The program, from its first block, counted.
+    pub(super) fn counted(&self) -> Result<Counted, Failure> {
+        Ok(Counted::new(self.program()?))
+    }
+
     /// The program, from its first block.
     pub(super) fn program(&self) -> Result<Box<dyn Program>, Failure> {
         Ok(match &self.body {
@@ -239,34 +232,29 @@ impl Source {
             }
             Body::Stream if self.path == "-" => Box::new(program::Read::new(BufReader::new(io::stdin()))),
             Body::Stream => {
-                let file = File::open(&self.path).map_err(|error| unreadable(&self.path, &error))?;
-                Box::new(program::Read::new(BufReader::new(file)))
+                Box::new(program::Read::new(BufReader::new(Later { path: self.path.clone(), file: None })))
             }
         })
     }
 
     /// Makes the whole program once to compare it with a journal: its blocks, and the first segment that differs.
-    pub(super) fn compare(
-        &self,
-        recorded: &[(u64, String)],
-    ) -> Result<crate::journal::resume::Program, Failure> {
-        let mut program = self.program()?;
-        let (mut segments, mut text, mut blocks) = (Segments::default(), Vec::new(), 0);
+    pub(super) fn compare(&self, history: &History) -> Result<resume::Program, Failure> {
+        let mut program = self.counted()?;
+        let (mut segments, mut text) = (Segments::default(), Vec::new());
+        let mut recorded = history.segments.iter().peekable();
         let mut differs_at = None;
         let mut compare = |found: Segment| {
-            if let Ok(n) = recorded.binary_search_by_key(&found.block, |(block, _)| *block)
-                && recorded[n].1 != found.value.to_hex().as_str()
+            if let Some((block, value)) = recorded.next_if(|(block, _)| *block == found.block)
+                && *value != found.value.to_hex().as_str()
             {
-                differs_at = differs_at.or(Some(found.block));
+                differs_at = differs_at.or(Some(*block));
             }
         };
-        let last_recorded = recorded.last().map_or(0, |(block, _)| *block);
         loop {
             text.clear();
             match program.pull(&mut text) {
-                Ok(Some(line)) => {
-                    blocks += u64::from(matches!(line, Line::Block(_)));
-                    if let Some(segment) = segments.add(&text, line) {
+                Ok(Some(numbered)) => {
+                    if let Some(segment) = segments.add(&text, numbered.line) {
                         compare(segment);
                     }
                 }
@@ -274,27 +262,53 @@ impl Source {
                 Err(program::ProgramError::Read(error)) => return Err(Failure::read(&self.path, error)),
             }
         }
-        compare(segments.finish());
-        if blocks < last_recorded {
-            differs_at = differs_at.or(Some(last_recorded));
+        // A recorded segment that was not met lies beyond the program's end.
+        differs_at = differs_at.or_else(|| recorded.next().map(|(block, _)| *block));
+        let whole = segments.finish();
+        if let Some((blocks, value)) = &history.whole
+            && (*blocks, value.as_str()) != (whole.block, whole.value.to_hex().as_str())
+        {
+            differs_at = differs_at.or(Some(*blocks));
         }
-        Ok(crate::journal::resume::Program { blocks, differs_at })
+        let same_source = !self.digest.is_empty() && self.digest == history.job.source_digest;
+        Ok(resume::Program { blocks: program.blocks(), differs_at, same_source })
     }
 }
 
-/// What the name of a file says it is; failing that, its first bytes.
-fn kind_of(word: &str) -> Option<Kind> {
+/// What the name of a file says it is; failing that, its first bytes. What can be read only once is not looked into.
+fn kind_of(word: &str, is_file: bool) -> Option<Kind> {
     let path = Path::new(word);
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("3b") => Some(Kind::ThreeB),
         Some("toml") => Some(Kind::Part),
+        _ if !is_file => None,
         _ => {
             let mut head = [0; 4096];
             let count = File::open(path).and_then(|mut file| file.read(&mut head)).ok()?;
-            let mut reader = crate::formats::three_b::read::Reader::new(&head[..count]);
+            let head = &head[..count];
+            if head.split(|&b| b == b'\n').any(|line| line.trim_ascii() == b"[part]") {
+                return Some(Kind::Part);
+            }
+            let mut reader = crate::formats::three_b::read::Reader::new(head);
             // A block within the first lines, with nothing unreadable before it.
             matches!(reader.next_item(), Ok(Some(_))).then_some(Kind::ThreeB)
         }
+    }
+}
+
+/// A FIFO, opened when it is first read: opening it waits for whoever writes, and that wait must not be the main thread's.
+struct Later {
+    path: String,
+    file: Option<File>,
+}
+
+impl Read for Later {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let file = match self.file.take() {
+            Some(file) => file,
+            None => File::open(&self.path)?,
+        };
+        self.file.insert(file).read(buffer)
     }
 }
 

@@ -15,6 +15,12 @@ pub struct History {
     pub sent: u64,
     /// Segment ends and their values, in order of block.
     pub segments: Vec<(u64, String)>,
+    /// The whole program's blocks and value, if it was made to its end.
+    pub whole: Option<(u64, String)>,
+    /// The horizon when the last run began: what earlier runs may have sent.
+    pub before: u64,
+    /// Whether a part of a line may stand in the control.
+    pub may_be_torn: bool,
     /// How the last run ended; none if it broke off.
     pub ended: Option<Ended>,
     /// How many times the job was resumed.
@@ -84,6 +90,9 @@ impl History {
                         horizon: before,
                         sent: before,
                         segments: Vec::new(),
+                        whole: None,
+                        before,
+                        may_be_torn: true,
                         ended: None,
                         resumptions: 0,
                         whole_bytes: 0,
@@ -113,16 +122,24 @@ impl History {
                     self.segments.push((block, value));
                 }
             }
+            Record::Whole { blocks, value } => self.whole = Some((blocks, value)),
             Record::Sent { block, .. } => self.sent = self.sent.max(block),
             Record::Resumed { block, .. } => {
                 self.resumptions += 1;
+                self.before = self.horizon;
                 self.ended = None;
                 self.sent = block.saturating_sub(1);
             }
             Record::Ended(ended) => {
                 self.sent = ended.block;
-                // A run that ended in order knows exactly how far it got.
-                self.horizon = ended.block + u64::from(ended.torn_bytes > 0);
+                // A run that ended in order knows exactly how far it got; an earlier one may have gone further.
+                self.horizon = self.before.max(ended.block + u64::from(ended.torn_bytes > 0));
+                // One that sent nothing leaves the control as it found it.
+                if ended.bytes > 0 {
+                    self.may_be_torn = ended.torn_bytes > 0;
+                } else if self.resumptions == 0 {
+                    self.may_be_torn = false;
+                }
                 self.ended = Some(ended);
             }
         }
@@ -167,6 +184,22 @@ impl<'a> Lines<'a> {
 pub(super) mod tests {
     use super::*;
     use crate::journal::How;
+
+    /// A history that says no more than a journal of one job would.
+    pub(in crate::journal) fn history(horizon: u64, sent: u64) -> History {
+        History {
+            job: job(),
+            horizon,
+            sent,
+            segments: Vec::new(),
+            whole: None,
+            before: 0,
+            may_be_torn: true,
+            ended: None,
+            resumptions: 0,
+            whole_bytes: 0,
+        }
+    }
 
     pub(in crate::journal) fn job() -> Job {
         Job {
@@ -231,10 +264,39 @@ pub(super) mod tests {
     #[test]
     fn an_orderly_end_says_exactly_how_far_it_got() {
         let (mut bytes, _) = journal();
-        let ended =
-            Ended { how: How::Stopped, reason: String::new(), block: 31, torn_bytes: 4, at: String::new() };
+        let ended = Ended {
+            how: How::Stopped,
+            reason: String::new(),
+            block: 31,
+            torn_bytes: 4,
+            bytes: 600,
+            at: String::new(),
+        };
         bytes.extend_from_slice(Record::Ended(ended).to_line().as_bytes());
         let history = History::read(&bytes).unwrap();
         assert_eq!((history.horizon, history.sent, history.state()), (32, 31, "stopped"));
+        assert!(history.may_be_torn);
+    }
+
+    #[test]
+    fn a_later_run_that_sent_little_takes_nothing_back() {
+        let (mut bytes, _) = journal();
+        let resumed = Record::Resumed { block: 20, at: String::new(), port: String::new() };
+        bytes.extend_from_slice(resumed.to_line().as_bytes());
+        let ended = Ended {
+            how: How::Stopped,
+            reason: String::new(),
+            block: 19,
+            torn_bytes: 0,
+            bytes: 0,
+            at: String::new(),
+        };
+        bytes.extend_from_slice(Record::Ended(ended).to_line().as_bytes());
+        let history = History::read(&bytes).unwrap();
+        assert_eq!((history.horizon, history.state()), (48, "stopped"));
+        assert!(
+            history.may_be_torn,
+            "the first run broke off, and the second sent nothing that would clear it"
+        );
     }
 }

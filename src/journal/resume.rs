@@ -2,7 +2,7 @@
 //!
 //! | case | when | answer |
 //! |---|---|---|
-//! | A | the program made again differs from what the journal vouches for | refused: changed, first differing segment |
+//! | A | the program made again differs from what the journal vouches for, or its source has changed and nothing vouches for all that may have been sent | refused: changed |
 //! | B | the operator names block 0 or one past the program's end | refused: no such block |
 //! | C | the operator names a block beyond the last that may have been sent, plus one | refused: blocks would be skipped |
 //! | D | the job is done and no block is named | refused: nothing is left |
@@ -25,6 +25,8 @@ pub struct Program {
     pub blocks: u64,
     /// The first segment whose value differs from the journal's, by its last block; none when all agree.
     pub differs_at: Option<u64>,
+    /// Whether the source is the same, byte for byte.
+    pub same_source: bool,
 }
 
 /// What the operator says.
@@ -55,6 +57,16 @@ pub enum Refusal {
         /// The first block of the differing segment.
         first: u64,
         /// Its last block.
+        last: u64,
+    },
+    /// A, where the journal's segments do not reach far enough to tell.
+    #[error(
+        "the source has changed, and nothing vouches for blocks {first} to {last}, which may have been sent"
+    )]
+    Unvouched {
+        /// The first block nothing vouches for.
+        first: u64,
+        /// The last block that may have been sent.
         last: u64,
     },
     /// B.
@@ -114,6 +126,14 @@ pub fn decide(
         let before = history.segments.iter().map(|(block, _)| *block).take_while(|b| *b < last).last();
         return Err(Refusal::Changed { first: before.unwrap_or(0) + 1, last });
     }
+    let vouched = match &history.whole {
+        Some((blocks, _)) => *blocks,
+        None => history.segments.last().map_or(0, |(block, _)| *block),
+    };
+    let reached = history.horizon.min(program.blocks);
+    if !program.same_source && vouched < reached {
+        return Err(Refusal::Unvouched { first: vouched + 1, last: reached });
+    }
     let done = history.state() == "done";
     let Some(block) = answer.from_block else {
         return Err(if done {
@@ -133,11 +153,7 @@ pub fn decide(
     if block > history.horizon + 1 {
         return Err(Refusal::WouldSkip { block, horizon: history.horizon });
     }
-    let may_be_torn = match &history.ended {
-        Some(ended) => ended.torn_bytes > 0,
-        None => true,
-    };
-    if may_be_torn && !discards_partial && !answer.control_cleared {
+    if history.may_be_torn && !discards_partial && !answer.control_cleared {
         return Err(Refusal::MayBeTorn);
     }
     Ok(Plan { from_block: block, repeated: (history.horizon.min(program.blocks) + 1).saturating_sub(block) })
@@ -146,23 +162,15 @@ pub fn decide(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::history::tests::job;
+    use crate::journal::history::tests;
     use crate::journal::{Ended, How};
 
     fn history() -> History {
-        History {
-            job: job(),
-            horizon: 40,
-            sent: 30,
-            segments: vec![(16, String::new()), (32, String::new())],
-            ended: None,
-            resumptions: 0,
-            whole_bytes: 0,
-        }
+        History { segments: vec![(16, String::new()), (32, String::new())], ..tests::history(40, 30) }
     }
 
     fn program() -> Program {
-        Program { blocks: 253, differs_at: None }
+        Program { blocks: 253, differs_at: None, same_source: true }
     }
 
     fn from(block: u64) -> Answer {
@@ -177,9 +185,18 @@ mod tests {
     }
 
     #[test]
+    fn a_a_changed_source_is_refused_where_no_segment_vouches_for_it() {
+        let changed = Program { same_source: false, ..program() };
+        let refusal = decide(&history(), &changed, from(20), true).unwrap_err();
+        assert_eq!(refusal, Refusal::Unvouched { first: 33, last: 40 });
+        let vouched = History { whole: Some((253, String::new())), ..history() };
+        assert!(decide(&vouched, &changed, from(20), true).is_ok());
+    }
+
+    #[test]
     fn b_a_block_that_does_not_exist_is_refused() {
         assert!(matches!(decide(&history(), &program(), from(0), true), Err(Refusal::NoSuchBlock { .. })));
-        let short = Program { blocks: 20, differs_at: None };
+        let short = Program { blocks: 20, ..program() };
         assert!(matches!(decide(&history(), &short, from(22), true), Err(Refusal::NoSuchBlock { .. })));
         assert!(decide(&history(), &short, from(21), true).is_ok());
     }
@@ -193,8 +210,14 @@ mod tests {
 
     #[test]
     fn d_a_finished_job_has_nothing_left() {
-        let ended =
-            Ended { how: How::Done, reason: String::new(), block: 253, torn_bytes: 0, at: String::new() };
+        let ended = Ended {
+            how: How::Done,
+            reason: String::new(),
+            block: 253,
+            torn_bytes: 0,
+            bytes: 5000,
+            at: String::new(),
+        };
         let done = History { ended: Some(ended), horizon: 253, ..history() };
         assert_eq!(decide(&done, &program(), Answer::default(), true), Err(Refusal::Done { blocks: 253 }));
         assert!(decide(&done, &program(), from(1), true).is_ok());

@@ -121,7 +121,8 @@ pub fn read(path: &Path) -> Result<History, JournalError> {
 /// Whether another process holds the journal.
 #[must_use]
 pub fn is_in_use(path: &Path) -> bool {
-    File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+    // Shared, so that looking never stands in a writer's way for long, nor in another's who looks.
+    File::open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
 /// The file of a job.
@@ -289,7 +290,9 @@ fn run(inbox: &Receiver<Note>) {
 
 impl Attached {
     fn settle(&mut self) {
-        if self.sync && !self.shared.failed.load(Ordering::Acquire) {
+        if self.shared.failed.load(Ordering::Acquire) {
+            self.waiting.clear();
+        } else if self.sync {
             match self.disk.append(&self.waiting).and_then(|()| self.disk.sync()) {
                 Ok(()) => self.shared.durable.store(self.horizon, Ordering::Release),
                 Err(error) => {

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 use super::{Link, LinkError};
 use crate::journal::Record;
 use crate::journal::writer::Journal;
-use crate::program::{Line, Program, ProgramError, Segment, Segments};
-use crate::protocol::{Command, Ending, Event, Phase, Protocol, Tally};
+use crate::program::{Counted, Line, Program, ProgramError, Segment, Segments};
+use crate::protocol::{Command, Ending, Event, Phase, ProgramEnd, Protocol, Tally};
 use crate::tape::{Tape, Unencodable};
 
 /// What the screen shows of a running feed.
@@ -40,7 +40,8 @@ pub struct Snapshot {
 pub struct Outcome {
     /// How the conversation ended.
     pub ending: Ending,
-    /// The source's fault, if it was that; the ending is then a stop at a block boundary.
+    /// The source's fault, if it had one; unless something worse came in between, the ending is then a stop at a block
+    /// boundary.
     pub source_error: Option<SourceError>,
     /// The link's own words, if it was lost.
     pub link_error: Option<LinkError>,
@@ -64,6 +65,13 @@ pub enum SourceFault {
     Program(ProgramError),
     /// A character has no code on the control's tape.
     Tape(Unencodable),
+    /// The program has no block at all.
+    Empty,
+    /// The first block to be sent lies past the program's end.
+    PastEnd {
+        /// The program's blocks.
+        blocks: u64,
+    },
     /// The producer's thread ended without a word: our own mistake.
     ProducerDied,
 }
@@ -78,8 +86,8 @@ pub struct Job {
     pub from_block: u64,
     /// Where the intent is written.
     pub journal: Journal,
-    /// Whether the line is paced, so that blocks are made one by one.
-    pub paced: bool,
+    /// Whether blocks are made one by one: the line is paced, or the source may keep the next one waiting.
+    pub one_by_one: bool,
 }
 
 /// What the rest of the process shares with a feed.
@@ -98,7 +106,7 @@ struct Batch {
     /// The end of each line in `bytes` with the number of its block; a stop word carries the number before it.
     ends: Vec<(usize, u64)>,
     segments: Vec<Segment>,
-    finished: Option<Segment>,
+    finished: Option<(Segment, ProgramEnd)>,
     error: Option<SourceError>,
 }
 
@@ -122,7 +130,7 @@ pub fn run(
 ) -> std::io::Result<(Outcome, Journal)> {
     let (requests, orders) = channel();
     let (batches, arrivals) = channel();
-    let Job { program, tape, from_block, journal, paced } = job;
+    let Job { program, tape, from_block, journal, one_by_one } = job;
     let producer = std::thread::Builder::new()
         .name("producer".to_owned())
         .spawn(move || produce(program, &tape, from_block, &orders, &batches))?;
@@ -134,7 +142,7 @@ pub fn run(
         began,
         requests,
         arrivals,
-        paced,
+        one_by_one,
         asked: false,
         exhausted: false,
         next_block: from_block,
@@ -165,7 +173,7 @@ struct Feed<'a> {
     began: Instant,
     requests: Sender<Request>,
     arrivals: Receiver<Batch>,
-    paced: bool,
+    one_by_one: bool,
     asked: bool,
     exhausted: bool,
     next_block: u64,
@@ -203,7 +211,7 @@ impl Feed<'_> {
             let now = self.now();
             let deadline =
                 self.protocol.poll_timeout(now).map_or(IDLE, |at| at.saturating_sub(now)).min(IDLE);
-            let wait = if blocked { deadline.max(BLOCKED).min(IDLE) } else { deadline };
+            let wait = if blocked { BLOCKED } else { deadline };
             let received = if self.asked {
                 // A batch is on its way: wait for that, and look at the line in between.
                 self.await_batch(wait.min(BATCH_POLL));
@@ -243,14 +251,12 @@ impl Feed<'_> {
     /// Keeps the protocol in blocks and the journal ahead of them.
     fn refill(&mut self) {
         let now = self.now();
-        self.horizon.advance(
-            &self.journal,
-            self.next_block,
-            self.first_block,
-            self.block,
-            now,
-            self.protocol.tally(),
-        );
+        let tally = self.protocol.tally();
+        // Waiting for the control says nothing of the rate at which blocks go out.
+        let sending = self
+            .first_byte
+            .map_or(Duration::ZERO, |first| now.saturating_sub(first).saturating_sub(tally.held));
+        self.horizon.advance(&self.journal, self.next_block, self.first_block, self.block, sending, tally);
         if self.asked {
             match self.arrivals.try_recv() {
                 Ok(batch) => self.take(batch),
@@ -261,7 +267,7 @@ impl Feed<'_> {
         let up_to = self.journal.allowed();
         if !self.asked && !self.exhausted && self.next_block <= up_to && self.protocol.wants_block(now) {
             // One block where the line is paced; where it is not, as much as keeps the link busy.
-            let single = self.paced || self.protocol.tally().bytes <= BATCH_FROM;
+            let single = self.one_by_one || self.protocol.tally().bytes <= BATCH_FROM;
             let request = Request { bytes: if single { 1 } else { BATCH_BYTES }, up_to };
             self.asked = self.requests.send(request).is_ok();
         }
@@ -283,7 +289,7 @@ impl Feed<'_> {
 
     fn take(&mut self, batch: Batch) {
         self.asked = false;
-        for segment in batch.segments.into_iter().chain(batch.finished) {
+        for segment in batch.segments {
             let value = segment.value.to_hex().to_string();
             self.journal.note(Record::Segment { block: segment.block, value });
         }
@@ -293,12 +299,13 @@ impl Feed<'_> {
             start = end;
             self.next_block = number + 1;
         }
-        if batch.finished.is_some() {
+        if let Some((whole, end)) = batch.finished {
+            self.journal.note(Record::Whole { blocks: whole.block, value: whole.value.to_hex().to_string() });
             self.exhausted = true;
-            self.protocol.finish();
+            self.protocol.finish(end);
         }
         if let Some(error) = batch.error {
-            // What was offered before the fault stands; nothing after it is ever offered.
+            // The block in hand is finished; nothing after it goes out.
             self.exhausted = true;
             self.source_error = Some(error);
             self.protocol.handle_command(Command::StopAtBlock, self.now());
@@ -366,17 +373,24 @@ impl Feed<'_> {
 }
 
 impl Horizon {
-    fn advance(&mut self, journal: &Journal, next: u64, first: u64, sent: u64, now: Duration, tally: Tally) {
-        if next + self.span / 2 <= self.asked {
+    fn advance(
+        &mut self,
+        journal: &Journal,
+        next: u64,
+        first: u64,
+        sent: u64,
+        sending: Duration,
+        tally: Tally,
+    ) {
+        if next.saturating_add(self.span / 2) <= self.asked {
             return;
         }
         if sent >= first {
             journal.note(Record::Sent { block: sent, bytes: tally.bytes });
         }
-        self.asked = next + self.span;
+        self.asked = next.saturating_add(self.span);
         journal.intend(self.asked);
-        let seconds = now.as_secs_f64().max(0.1);
-        let rate = sent.saturating_sub(first) as f64 / seconds;
+        let rate = sent.saturating_sub(first) as f64 / sending.as_secs_f64().max(0.1);
         let cover = (rate * HORIZON_SECONDS) as u64;
         self.span = (self.span * 2).min(cover.max(HORIZON_FIRST));
     }
@@ -384,42 +398,51 @@ impl Horizon {
 
 /// Makes blocks when asked, until nobody asks.
 fn produce(
-    mut program: Box<dyn Program>,
+    program: Box<dyn Program>,
     tape: &Tape,
     from_block: u64,
     orders: &Receiver<Request>,
     batches: &Sender<Batch>,
 ) {
+    let mut program = Counted::new(program);
     let mut segments = Segments::default();
     let mut text = Vec::new();
-    let mut number = 0;
+    let mut end = ProgramEnd::Block;
     while let Ok(request) = orders.recv() {
         let mut batch = Batch::default();
         // Blocks before the first to be sent are made for their digest alone.
-        while batch.bytes.len() < request.bytes && number < request.up_to {
+        while batch.bytes.len() < request.bytes && program.blocks() < request.up_to {
             text.clear();
-            let line = match program.pull(&mut text) {
-                Ok(Some(line)) => line,
+            let next = program.blocks() + 1;
+            let fault = |fault| Some(SourceError { block: next, fault });
+            let numbered = match program.pull(&mut text) {
+                Ok(Some(numbered)) => numbered,
+                Ok(None) if program.blocks() == 0 => {
+                    batch.error = fault(SourceFault::Empty);
+                    break;
+                }
+                Ok(None) if next < from_block => {
+                    batch.error = fault(SourceFault::PastEnd { blocks: program.blocks() });
+                    break;
+                }
                 Ok(None) => {
-                    batch.finished = Some(segments.finish());
+                    batch.finished = Some((segments.finish(), end));
                     break;
                 }
                 Err(error) => {
-                    batch.error = Some(SourceError { block: number + 1, fault: SourceFault::Program(error) });
+                    batch.error = fault(SourceFault::Program(error));
                     break;
                 }
             };
-            let counts = u64::from(matches!(line, Line::Block(_)));
-            if number + counts >= from_block || (counts == 0 && number + 1 >= from_block) {
+            end = if numbered.line == Line::End { ProgramEnd::StopWord } else { ProgramEnd::Block };
+            if numbered.goes_out_from(from_block) {
                 if let Err(error) = tape.encode(&text, &mut batch.bytes) {
-                    batch.error = Some(SourceError { block: number + 1, fault: SourceFault::Tape(error) });
+                    batch.error = fault(SourceFault::Tape(error));
                     break;
                 }
-                batch.ends.push((batch.bytes.len(), number + counts));
+                batch.ends.push((batch.bytes.len(), numbered.block));
             }
-            number += counts;
-            // The journal has those of the blocks before.
-            batch.segments.extend(segments.add(&text, line).filter(|s| s.block >= from_block));
+            batch.segments.extend(segments.add(&text, numbered.line));
         }
         let over = batch.finished.is_some() || batch.error.is_some();
         if batches.send(batch).is_err() || over {

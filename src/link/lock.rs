@@ -23,11 +23,7 @@ impl PortLock {
             port: port.to_owned(),
             reason: format!("lock file {}: {error}", path.display()),
         };
-        if let Some(directory) = path.parent() {
-            std::fs::create_dir_all(directory).map_err(io)?;
-        }
-        let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).clone();
-        let mut file = options.open(&path).map_err(io)?;
+        let mut file = open(&path).map_err(io)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
@@ -46,6 +42,31 @@ impl PortLock {
     }
 }
 
+/// Opens a lock file, or makes it for every user of this machine; a lock needs no permission to write.
+fn open(path: &Path) -> io::Result<File> {
+    if let Ok(file) = OpenOptions::new().read(true).write(true).open(path).or_else(|_| File::open(path)) {
+        return Ok(file);
+    }
+    if let Some(directory) = path.parent() {
+        std::fs::create_dir_all(directory)?;
+        let _ = permit(directory, 0o1777);
+    }
+    let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+    let _ = permit(path, 0o666);
+    Ok(file)
+}
+
+#[cfg(unix)]
+fn permit(path: &Path, mode: u32) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode))
+}
+
+#[cfg(not(unix))]
+fn permit(_path: &Path, _mode: u32) -> io::Result<()> {
+    Ok(())
+}
+
 /// The lock file of a device: its canonical path with `/` as `_`.
 fn lock_path(device: &Path) -> PathBuf {
     let name: String = device
@@ -54,5 +75,7 @@ fn lock_path(device: &Path) -> PathBuf {
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() || c == '-' || c == '.' { c } else { '_' })
         .collect();
-    std::env::temp_dir().join("dripfeed-locks").join(name)
+    // One place for every user and environment: locks in different places would not meet.
+    let shared = if cfg!(unix) { PathBuf::from("/tmp") } else { std::env::temp_dir() };
+    shared.join("dripfeed-locks").join(name)
 }

@@ -103,6 +103,11 @@ impl SerialLink {
             serialport::ErrorKind::Io(kind) => {
                 LinkError::from_open(name, io::Error::new(kind, error.to_string()))
             }
+            serialport::ErrorKind::InvalidInput | serialport::ErrorKind::Unknown
+                if error.description.contains("typewriter") || error.description.contains("ioctl") =>
+            {
+                LinkError::NotSerial { port: name.to_owned() }
+            }
             serialport::ErrorKind::InvalidInput | serialport::ErrorKind::Unknown => {
                 LinkError::Settings { port: name.to_owned(), reason: error.to_string() }
             }

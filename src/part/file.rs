@@ -63,14 +63,18 @@ impl PartFile {
         ] {
             reader.take(key, part.number(key)?, value);
         }
-        reader.take("teeth", part.whole("teeth", 0..=u64::MAX)?, &mut gear.teeth);
+        reader.take("teeth", part.whole("teeth", 3..=1_000_000)?, &mut gear.teeth);
         reader.take_word("direction", part.word("direction", &DIRECTIONS)?, &mut made.direction, "cw");
         reader.take("repeat", part.whole("repeat", 1..=u64::MAX)?, &mut made.repeat);
         if part.switch("trim")? == Some(true) {
             made.trim = Trim::Allow;
         }
         match part.point_or_word("lead_in")? {
-            Some(PointOrWord::Point(x, y)) => made.lead_in = start_hole(x, y),
+            Some(PointOrWord::Point(x, y)) => {
+                made.lead_in = start_hole(x, y).ok_or_else(|| {
+                    part.error("lead_in", "`lead_in` must lie within 100 m of the centre", None)
+                })?;
+            }
             Some(PointOrWord::Word("centre")) => made.lead_in = LeadIn::Centre,
             Some(PointOrWord::Word("none")) => made.lead_in = LeadIn::None,
             Some(PointOrWord::Word(_)) => {

@@ -1,10 +1,10 @@
 //! DC1-DC4 (XON/XOFF at the application's level): the control starts, stops and ends the transfer.
 //!
 //! ```text
-//!  AwaitingStart ──DC1, start now──▶ Feeding ──DC3──▶ Held ──DC1──▶ Feeding
+//!  AwaitingStart ──────DC1──────────▶ Feeding ──DC3──▶ Held ──DC1──▶ Feeding
 //!        │                              │ all handed over      └─SYN, NAK─▶ failed, for good
 //!        │ profile starts at once       ▼
-//!        └─────────────────────────▶ Draining ──line empty──▶ done
+//!        └─────────────────────────▶ Draining ──line empty, 0.3 s──▶ done
 //!
 //!  DC3 with nothing left:               the end of the transfer, not a hold → Draining
 //!  DC3 with only the trailer left,
@@ -24,7 +24,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::pacing::{Pace, Pacer};
-use super::{Command, Ending, Event, Failure, Phase, Protocol, Tally, Torn};
+use super::{Command, Ending, Event, Failure, Phase, ProgramEnd, Protocol, Tally, Torn, TornLine};
 
 /// What the profile and the job say about the conversation.
 #[derive(Clone, Debug)]
@@ -39,8 +39,6 @@ pub struct Settings {
     pub leader: Vec<u8>,
     /// Bytes after the last block.
     pub trailer: Vec<u8>,
-    /// Whether the program ends with a stop word, so that a control may stop reading before the trailer.
-    pub ends_with_stop_word: bool,
 }
 
 /// The sender's end of a DC1-DC4 conversation.
@@ -57,7 +55,9 @@ pub struct DcCodes {
     /// Bytes handed over, and where the current block began.
     handed: u64,
     block_began: u64,
-    source_finished: bool,
+    /// The last block handed over whole; a line that still has its number is a stop word.
+    transmitted: u64,
+    source_finished: Option<ProgramEnd>,
     /// Bytes of the trailer among those not yet handed over.
     trailer_left: usize,
     stopping: bool,
@@ -72,7 +72,7 @@ enum State {
     AwaitingStart { since: Duration },
     Feeding,
     Held { since: Duration },
-    Draining,
+    Draining { until: Duration },
     Lingering { until: Duration },
     Ended,
 }
@@ -90,7 +90,8 @@ impl DcCodes {
             ends: VecDeque::new(),
             handed: 0,
             block_began: settings.leader.len() as u64,
-            source_finished: false,
+            transmitted: 0,
+            source_finished: None,
             trailer_left: 0,
             stopping: false,
             events: VecDeque::new(),
@@ -113,7 +114,8 @@ impl DcCodes {
         self.text.len() - self.start
     }
 
-    fn end(&mut self, ending: Ending) {
+    fn end(&mut self, ending: Ending, now: Duration) {
+        self.end_hold(now);
         self.state = State::Ended;
         self.events.push_back(Event::Ended(ending));
     }
@@ -121,65 +123,78 @@ impl DcCodes {
     fn torn(&self) -> Option<Torn> {
         let bytes = self.handed.checked_sub(self.block_began)? as usize;
         let (_, block) = *self.ends.front()?;
-        (bytes > 0).then_some(Torn { block, bytes })
+        let line =
+            if block == self.transmitted { TornLine::StopWordAfter(block) } else { TornLine::Block(block) };
+        (bytes > 0).then_some(Torn { line, bytes })
     }
 
-    fn fail(&mut self, failure: Failure) {
+    fn fail(&mut self, failure: Failure, now: Duration) {
         let torn = self.torn();
-        self.end(Ending::Failed { failure, torn });
+        self.end(Ending::Failed { failure, torn }, now);
     }
 
     /// Whether everything there will ever be has been handed over.
     fn is_all_handed(&self) -> bool {
-        self.source_finished && self.left() == 0
+        self.source_finished.is_some() && self.left() == 0
     }
 
     fn is_only_trailer_left(&self) -> bool {
-        self.source_finished && self.left() > 0 && self.left() == self.trailer_left
+        self.source_finished.is_some() && self.left() > 0 && self.left() == self.trailer_left
     }
 
-    /// Settles into draining or stops, if the moment has come.
+    /// Settles into draining or ends, if the moment has come.
     fn settle(&mut self, now: Duration) {
+        if self.stopping
+            && self.torn().is_none()
+            && !matches!(self.state, State::Draining { .. } | State::Ended)
+        {
+            // A boundary: what is left stays unsent, and what the driver has runs out first.
+            self.end_hold(now);
+            self.state = State::Draining { until: self.pacer.free_at().max(now) };
+        }
         match self.state {
-            State::Feeding if self.stopping && self.torn().is_none() => {
-                // A boundary: what is left stays unsent, the line runs empty first.
-                self.state = State::Draining;
+            State::Feeding if self.is_all_handed() => self.drain(now),
+            State::Draining { until } if now >= until => {
+                let stopped = self.stopping && !self.is_all_handed();
+                let ending =
+                    if stopped { Ending::Stopped { torn: None } } else { Ending::Done { trailer_unsent: 0 } };
+                self.end(ending, now);
             }
-            State::AwaitingStart { .. } | State::Held { .. } | State::Lingering { .. }
-                if self.stopping && self.torn().is_none() =>
-            {
-                self.end(Ending::Stopped { torn: None });
-            }
-            State::Feeding if self.is_all_handed() => self.state = State::Draining,
-            State::Draining if now >= self.pacer.free_at() => {
-                self.end(if self.stopping && !self.is_all_handed() {
-                    Ending::Stopped { torn: None }
-                } else {
-                    Ending::Done { trailer_unsent: 0 }
-                })
-            }
-            State::Lingering { until } if now >= until => {
-                let trailer_unsent = self.left();
-                self.end(Ending::Done { trailer_unsent });
-            }
+            State::Lingering { until } if now >= until => self.end_without_trailer(now),
             State::AwaitingStart { since } => {
                 if let Some(limit) = self.settings.start_timeout
                     && now >= since + limit
                 {
-                    self.end(Ending::Failed { failure: Failure::NeverStarted(limit), torn: None });
+                    self.end(Ending::Failed { failure: Failure::NeverStarted(limit), torn: None }, now);
                 }
             }
             State::Feeding
             | State::Held { .. }
-            | State::Draining
+            | State::Draining { .. }
             | State::Lingering { .. }
             | State::Ended => {}
         }
     }
 
+    fn drain(&mut self, now: Duration) {
+        let listen = self.settings.pace.latency + LISTEN;
+        self.state = State::Draining { until: self.pacer.free_at().max(now) + listen };
+    }
+
+    fn end_without_trailer(&mut self, now: Duration) {
+        let trailer_unsent = self.left();
+        self.end(Ending::Done { trailer_unsent }, now);
+    }
+
+    fn end_hold(&mut self, now: Duration) {
+        if let State::Held { since } = self.state {
+            self.tally.held += now.saturating_sub(since);
+        }
+    }
+
     fn release(&mut self, since: Duration, now: Duration) {
         let held = now.saturating_sub(since);
-        self.tally.held += held;
+        self.end_hold(now);
         self.handed_at_release = self.handed;
         self.state = State::Feeding;
         self.events.push_back(Event::Released { held });
@@ -191,14 +206,13 @@ impl DcCodes {
         let overrun =
             self.pacer.completed_after(now.saturating_sub(self.settings.pace.latency), since_release);
         self.tally.max_overrun_bytes = self.tally.max_overrun_bytes.max(overrun as u64);
-        if self.is_only_trailer_left() {
-            if self.settings.ends_with_stop_word {
-                self.state = State::Lingering { until: now + LINGER };
-                return;
-            }
-        } else if self.is_all_handed() {
+        if self.is_only_trailer_left() && self.source_finished == Some(ProgramEnd::StopWord) {
+            self.state = State::Lingering { until: now + LINGER };
+            return;
+        }
+        if self.is_all_handed() {
             // The last byte is out: this DC3 ends the transfer.
-            self.state = State::Draining;
+            self.drain(now);
             return;
         }
         self.tally.holds += 1;
@@ -217,28 +231,28 @@ impl DcCodes {
             }
             State::Feeding => match code {
                 DC3 => self.hold(now),
-                SYN => self.fail(Failure::ControlReset),
-                NAK => self.fail(Failure::ControlAlarm),
+                SYN => self.fail(Failure::ControlReset, now),
+                NAK => self.fail(Failure::ControlAlarm, now),
                 // A second DC1 is not a second start; DC2 and DC4 concern the control's own punch.
                 _ => {}
             },
             State::Held { since } => match code {
                 DC1 => self.release(since, now),
-                SYN => self.fail(Failure::ControlReset),
-                NAK => self.fail(Failure::ControlAlarm),
+                SYN => self.fail(Failure::ControlReset, now),
+                NAK => self.fail(Failure::ControlAlarm, now),
                 // A repeated DC3 changes nothing.
                 _ => {}
             },
-            State::Draining => match code {
-                SYN => self.fail(Failure::ControlReset),
-                NAK => self.fail(Failure::ControlAlarm),
+            State::Draining { .. } => match code {
+                SYN => self.fail(Failure::ControlReset, now),
+                NAK => self.fail(Failure::ControlAlarm, now),
                 // DC3 after the last byte is the end of the transfer.
                 _ => {}
             },
             State::Lingering { .. } => match code {
                 DC1 => self.state = State::Feeding,
-                SYN => self.fail(Failure::ControlReset),
-                NAK => self.fail(Failure::ControlAlarm),
+                SYN => self.fail(Failure::ControlReset, now),
+                NAK => self.fail(Failure::ControlAlarm, now),
                 _ => {}
             },
             // Nothing after the end concerns this job.
@@ -252,11 +266,13 @@ impl Protocol for DcCodes {
         let ahead = self.left() + self.pacer.unsent(now);
         match self.state {
             // Before the start one block is fetched, so that a program that cannot even begin is known by then.
-            State::AwaitingStart { .. } => !self.source_finished && !self.stopping && self.ends.is_empty(),
-            State::Feeding | State::Held { .. } => {
-                !self.source_finished && !self.stopping && ahead < self.settings.pace.window
+            State::AwaitingStart { .. } => {
+                self.source_finished.is_none() && !self.stopping && self.ends.is_empty()
             }
-            State::Draining | State::Lingering { .. } | State::Ended => false,
+            State::Feeding | State::Held { .. } => {
+                self.source_finished.is_none() && !self.stopping && ahead < self.settings.pace.window
+            }
+            State::Draining { .. } | State::Lingering { .. } | State::Ended => false,
         }
     }
 
@@ -272,16 +288,18 @@ impl Protocol for DcCodes {
         self.ends.push_back((self.handed + self.left() as u64, number));
     }
 
-    fn finish(&mut self) {
-        if !self.source_finished {
-            self.source_finished = true;
-            self.text.extend_from_slice(&self.settings.trailer);
-            self.trailer_left = self.settings.trailer.len();
-            // Held since the stop word: what looked like a hold may have been the end.
-            if let State::Held { since } = self.state
-                && self.is_only_trailer_left()
-                && self.settings.ends_with_stop_word
-            {
+    fn finish(&mut self, end: ProgramEnd) {
+        if self.source_finished.is_some() {
+            return;
+        }
+        self.source_finished = Some(end);
+        self.text.extend_from_slice(&self.settings.trailer);
+        self.trailer_left = self.settings.trailer.len();
+        // Held since the last line: what looked like a hold may have been the end.
+        if let State::Held { since } = self.state {
+            if self.is_all_handed() {
+                self.drain(since);
+            } else if self.is_only_trailer_left() && end == ProgramEnd::StopWord {
                 self.state = State::Lingering { until: since + LINGER };
             }
         }
@@ -299,6 +317,7 @@ impl Protocol for DcCodes {
         assert!(self.start <= self.text.len(), "the link took more bytes than it was offered");
         self.handed += count as u64;
         self.tally.bytes += count as u64;
+        self.tally.last_byte = Some((now, self.tally.held));
         self.trailer_left = self.trailer_left.min(self.left());
         self.pacer.handed(count, now);
         let mut transmitted = None;
@@ -311,6 +330,7 @@ impl Protocol for DcCodes {
             self.ends.pop_front();
         }
         if let Some(block) = transmitted {
+            self.transmitted = block;
             self.events.push_back(Event::Transmitted { block });
         }
         self.settle(now);
@@ -319,21 +339,26 @@ impl Protocol for DcCodes {
     fn handle_command(&mut self, command: Command, now: Duration) {
         match (command, self.state) {
             (_, State::Ended) => {}
-            (Command::StartNow, State::AwaitingStart { .. }) => self.begin(),
-            // Only a job that waits can be told to start.
-            (Command::StartNow, _) => {}
             (Command::StopAtBlock, _) => self.stopping = true,
             (Command::StopNow, _) => {
                 let torn = self.torn();
-                self.end(Ending::Stopped { torn });
+                self.end(Ending::Stopped { torn }, now);
             }
         }
         self.settle(now);
     }
 
-    fn handle_link_lost(&mut self, _now: Duration) {
-        if self.state != State::Ended {
-            self.fail(Failure::LinkLost);
+    fn handle_link_lost(&mut self, now: Duration) {
+        match self.state {
+            State::Ended => {}
+            // All the control wants is there; a link that goes now takes nothing with it.
+            State::Lingering { .. } => self.end_without_trailer(now),
+            State::Draining { .. } if self.is_all_handed() && now >= self.pacer.free_at() => {
+                self.end(Ending::Done { trailer_unsent: 0 }, now);
+            }
+            State::AwaitingStart { .. } | State::Feeding | State::Held { .. } | State::Draining { .. } => {
+                self.fail(Failure::LinkLost, now);
+            }
         }
     }
 
@@ -364,7 +389,7 @@ impl Protocol for DcCodes {
             State::Feeding if self.left() == 0 && self.wants_block(now) => None,
             State::Feeding => self.pacer.room_at(now),
             State::Held { .. } => None,
-            State::Draining => Some(self.pacer.free_at()),
+            State::Draining { until } => Some(until),
             State::Lingering { until } => Some(until),
             State::Ended => None,
         }
@@ -379,7 +404,7 @@ impl Protocol for DcCodes {
             State::AwaitingStart { since } => Phase::AwaitingStart { since },
             State::Feeding => Phase::Feeding,
             State::Held { since } => Phase::Held { since },
-            State::Draining => Phase::Draining,
+            State::Draining { .. } => Phase::Draining,
             State::Lingering { until } => Phase::Lingering { until },
             State::Ended => Phase::Ended,
         }
@@ -398,6 +423,9 @@ const DC3: u8 = 0x13;
 const NAK: u8 = 0x15;
 /// Synchronous idle: on these controls, a reset.
 const SYN: u8 = 0x16;
+
+/// How long the control is listened to once the line is empty: it may still answer the last bytes with an alarm. A guess.
+const LISTEN: Duration = Duration::from_millis(300);
 
 /// How long a control that stopped at the stop word may still ask for the trailer. A guess: Haas repeats DC1 every 5 s.
 const LINGER: Duration = Duration::from_secs(5);

@@ -44,23 +44,23 @@ impl Pace {
 
     /// Free running. Of the characters the limit leaves beside the latency, half may wait in the driver, to keep the line
     /// busy, and half are for this process being late to hear DC3; on a fast line more wait, enough to bridge a
-    /// millisecond. At least one.
+    /// millisecond. At least one. A window that is given is kept.
     #[must_use]
-    pub fn free(character: Duration, latency: Duration, limit: usize) -> Self {
+    pub fn free(character: Duration, latency: Duration, limit: usize, window: Option<usize>) -> Self {
         let left = limit.saturating_sub(characters_within(latency, character));
         let bridge = characters_within(BRIDGED, character).min(left.saturating_sub(UNNOTICED));
-        let window = left.div_ceil(2).max(bridge).clamp(1, WINDOW_MAX);
+        let window = window.unwrap_or(left.div_ceil(2).max(bridge)).clamp(1, WINDOW_MAX);
         Self { character: Some(character), window, gaps: None, latency }
     }
 
     /// With listening gaps where the latency makes free running break the limit.
     #[must_use]
-    pub fn strict(character: Duration, latency: Duration, limit: usize) -> Self {
-        let free = Self::free(character, latency, limit);
+    pub fn strict(character: Duration, latency: Duration, limit: usize, window: Option<usize>) -> Self {
+        let free = Self::free(character, latency, limit, window);
         if free.worst_overrun() <= limit {
             return free;
         }
-        let window = STRICT_WINDOW.min(limit).max(1);
+        let window = free.window.min(STRICT_WINDOW).min(limit).max(1);
         let span = latency + character * (window as u32) + STRICT_MARGIN;
         Self { window, gaps: Some(Gaps { burst: limit.max(1), span }), ..free }
     }
@@ -118,12 +118,6 @@ impl Pacer {
     #[must_use]
     pub fn new(pace: Pace) -> Self {
         Self { pace, free_at: Duration::ZERO, completed: VecDeque::new() }
-    }
-
-    /// The bounds it keeps.
-    #[must_use]
-    pub fn pace(&self) -> &Pace {
-        &self.pace
     }
 
     /// When the line will be empty.
@@ -208,27 +202,29 @@ mod tests {
 
     #[test]
     fn the_window_leaves_room_for_the_latency() {
-        let pace = Pace::free(character(4800), 16 * MS, 10);
+        let pace = Pace::free(character(4800), 16 * MS, 10, None);
         assert_eq!((pace.window, pace.worst_overrun()), (2, 10));
-        let pace = Pace::free(character(9600), 4 * MS, 10);
+        let pace = Pace::free(character(9600), 4 * MS, 10, None);
         assert_eq!((pace.window, pace.worst_overrun()), (3, 8));
-        let pace = Pace::free(character(9600), 16 * MS, 10);
+        let pace = Pace::free(character(9600), 16 * MS, 10, None);
         assert_eq!((pace.window, pace.worst_overrun()), (1, 16));
-        let pace = Pace::free(character(115_200), Duration::ZERO, 10);
+        let pace = Pace::free(character(115_200), Duration::ZERO, 10, None);
         assert_eq!((pace.window, pace.worst_overrun()), (9, 10));
     }
 
     #[test]
     fn strict_pacing_gaps_only_where_it_must() {
-        assert_eq!(Pace::strict(character(4800), 16 * MS, 10).gaps, None);
-        let pace = Pace::strict(character(9600), 16 * MS, 10);
+        assert_eq!(Pace::strict(character(4800), 16 * MS, 10, None).gaps, None);
+        let pace = Pace::strict(character(9600), 16 * MS, 10, None);
         assert_eq!(pace.worst_overrun(), 10);
+        assert_eq!(Pace::strict(character(9600), 16 * MS, 10, Some(16)).window, STRICT_WINDOW);
+        assert!(Pace::strict(character(4800), 16 * MS, 10, Some(16)).gaps.is_some());
         assert!(pace.best_utilisation() > 0.55, "{}", pace.best_utilisation());
     }
 
     #[test]
     fn no_span_ever_holds_more_than_a_burst() {
-        let pace = Pace::strict(character(9600), 16 * MS, 10);
+        let pace = Pace::strict(character(9600), 16 * MS, 10, None);
         let (mut pacer, mut now, mut done) = (Pacer::new(pace), Duration::ZERO, Vec::new());
         while done.len() < 2000 {
             let room = pacer.room(now);

@@ -13,7 +13,8 @@ pub struct Audit {
     /// Blocks seen.
     pub blocks: u64,
     stands: [Position; 4],
-    opened: [Position; 4],
+    /// Where the first contour was opened; every turn comes back there.
+    opened: Option<[Position; 4]>,
     /// Per model, in the order of [`Model::ALL`].
     errors: [Deviation; 4],
 }
@@ -23,7 +24,7 @@ pub struct Audit {
 pub struct Deviation {
     /// The largest distance of a node from theory.
     pub node_um: f64,
-    /// The distance between the last contour's end and its opening.
+    /// The distance between the last contour's end and the first one's opening.
     pub closure_um: f64,
 }
 
@@ -31,7 +32,7 @@ impl Audit {
     /// An account that begins with the wire at `origin`.
     #[must_use]
     pub fn new(origin: Position) -> Self {
-        Self { blocks: 0, stands: [origin; 4], opened: [origin; 4], errors: [Deviation::default(); 4] }
+        Self { blocks: 0, stands: [origin; 4], opened: None, errors: [Deviation::default(); 4] }
     }
 
     /// Adds a block.
@@ -41,12 +42,12 @@ impl Audit {
     /// When a model cannot run the block.
     pub fn add(&mut self, made: &Made) -> Result<(), Fault> {
         self.blocks += 1;
+        if made.role == Role::Opening && self.opened.is_none() {
+            self.opened = Some(self.stands);
+        }
         let arc = matches!(made.block.motion, crate::formats::three_b::Motion::Arc(..));
         let mut before = Position::default();
         for (n, model) in Model::ALL.into_iter().enumerate() {
-            if made.role == Role::Opening {
-                self.opened[n] = self.stands[n];
-            }
             // Arcs run alike under `rotated` and its neighbour `mirrored`.
             let moved =
                 if arc && model == Model::Mirrored { before } else { model.displacement(&made.block)? };
@@ -56,8 +57,8 @@ impl Audit {
                 let error = self.stands[n].distance_um(made.target);
                 self.errors[n].node_um = self.errors[n].node_um.max(error);
             }
-            if made.role == Role::Closing && made.at_node {
-                let gap = self.stands[n] - self.opened[n];
+            if let (Role::Closing, true, Some(opened)) = (made.role, made.at_node, self.opened) {
+                let gap = self.stands[n] - opened[n];
                 let (x, y) = (gap.x.0 as f64, gap.y.0 as f64);
                 self.errors[n].closure_um = (x * x + y * y).sqrt();
             }

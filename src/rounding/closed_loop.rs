@@ -83,26 +83,30 @@ impl<I: Iterator<Item = Step>> ClosedLoop<I> {
     fn make(&mut self, piece: Element) -> Option<Choice> {
         let closes = self.role == Role::Closing && self.pieces.is_empty();
         let goal = if closes { Goal::home(self.opened) } else { Goal::near(piece.end()) };
-        match piece {
+        let found = match piece {
             Element::Line { .. } => line::choose(self.stand, goal),
             Element::Arc { start, end, centre, sense } => {
-                match arc::choose(self.stand, goal, arc::Shape::new(start, end, centre, sense)) {
-                    Ok(choice) => choice,
-                    Err(NoneFits) => match arc::split(&piece) {
-                        Some((first, rest)) => {
-                            self.pieces.push_front(rest);
-                            self.make(first)
-                        }
-                        // Flatter than the lattice can show: its chord is the same cut.
-                        None => line::choose(self.stand, goal),
-                    },
-                }
+                arc::choose(self.stand, goal, arc::Shape::new(start, end, centre, sense))
             }
-        }
+        };
+        let (first, rest) = match (found, piece) {
+            (Ok(choice), _) => return choice,
+            (Err(NoneFits), Element::Line { start, end }) => {
+                let Some(by) = line::detour(self.stand, goal) else { return line::nearest(self.stand, goal) };
+                (Element::Line { start, end: by }, Element::Line { start: by, end })
+            }
+            (Err(NoneFits), Element::Arc { start, end, .. }) => match arc::split(&piece) {
+                Some(pieces) => pieces,
+                // Flatter than the lattice can show: its chord is the same cut.
+                None => return self.make(Element::Line { start, end }),
+            },
+        };
+        self.pieces.push_front(rest);
+        self.make(first)
     }
 }
 
-/// No single block cuts the arc within the limit.
+/// No single block cuts the piece within the limit.
 #[derive(Clone, Copy, Debug)]
 struct NoneFits;
 

@@ -9,14 +9,17 @@ use std::io::{self, BufRead};
 
 use thiserror::Error;
 
-use super::{Axis, Block, Motion, Quadrant};
+use super::{Axis, Block, COUNT_MAX, Motion, Quadrant};
 use crate::geometry::Sense;
-use crate::interpolator::{COORDINATE_MAX, Fault, Model};
+use crate::interpolator::{COORDINATE_MAX, Model};
 use crate::place::Place;
 use crate::units::Micrometres;
 
-/// The longest line that is read; a longer one is an error, not a buffer.
+/// The longest line that is held; a longer one is an error, not a buffer, unless it is of blocks that run together.
 pub const LINE_BYTES_MAX: usize = 65_536;
+
+/// The longest a block's own text may be, white space aside.
+const BLOCK_BYTES_MAX: usize = 200;
 
 /// Something of a 3B program.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,12 +53,16 @@ pub enum ReadError {
 #[derive(Debug)]
 pub struct Reader<R> {
     input: R,
+    /// The line in work, or a piece of a long one.
     line: Vec<u8>,
+    /// What was read of a long line beyond the piece in work.
+    rest: Vec<u8>,
     line_number: u64,
+    /// Columns of the line before the piece in work.
+    line_column: u64,
     line_byte: u64,
     at: usize,
     text: Vec<u8>,
-    blocks: u64,
     ended_by: Option<&'static str>,
 }
 
@@ -65,11 +72,12 @@ impl<R: BufRead> Reader<R> {
         Self {
             input,
             line: Vec::new(),
+            rest: Vec::new(),
             line_number: 0,
+            line_column: 0,
             line_byte: 0,
             at: 0,
             text: Vec::new(),
-            blocks: 0,
             ended_by: None,
         }
     }
@@ -78,12 +86,6 @@ impl<R: BufRead> Reader<R> {
     #[must_use]
     pub fn text(&self) -> &[u8] {
         &self.text
-    }
-
-    /// Blocks read so far.
-    #[must_use]
-    pub fn blocks(&self) -> u64 {
-        self.blocks
     }
 
     /// The next block or stop word; none at the end of the source.
@@ -100,8 +102,14 @@ impl<R: BufRead> Reader<R> {
                 return Ok(None);
             };
             match byte {
-                b' ' | b'\t' | b'\r' | b'\n' | 0 => self.at += 1,
-                b'%' | b';' | b'*' => self.at = self.line.len(),
+                b' ' | b'\t' | b'\r' | b'\n' | 0 | 0x1A => self.at += 1,
+                // A UTF-8 byte order mark, as editors leave it.
+                0xEF if self.line_number == 1 && self.at == 0 && self.line.starts_with(b"\xEF\xBB\xBF") => {
+                    self.at = 3
+                }
+                b'%' => self.at += 1,
+                b';' => self.at = self.line.len(),
+                b'*' => self.row_of_stars()?,
                 b'(' => {
                     self.at = self.line[self.at..]
                         .iter()
@@ -124,30 +132,45 @@ impl<R: BufRead> Reader<R> {
         }
     }
 
-    /// Reads the next line into `line`; false at the end.
+    /// Reads the next line into `line`, or of a longer one the next blocks that run together; false at the end.
     fn next_line(&mut self) -> Result<bool, ReadError> {
         self.line_byte += self.line.len() as u64;
-        self.line.clear();
-        self.at = 0;
-        self.line_number += 1;
-        let limit = LINE_BYTES_MAX as u64 + 1;
-        let read = io::Read::take(&mut self.input, limit).read_until(b'\n', &mut self.line)?;
-        if read > LINE_BYTES_MAX {
-            return Err(self.error(
-                LINE_BYTES_MAX,
-                1,
-                format!("the line is longer than {LINE_BYTES_MAX} bytes"),
-                "break it between two blocks; a 3B block needs no more than about 40 characters",
-            ));
+        let continues = !self.line.is_empty() && !self.line.ends_with(b"\n");
+        if continues {
+            self.line_column += self.line.len() as u64;
+        } else {
+            self.line_number += 1;
+            self.line_column = 0;
         }
-        Ok(read > 0)
+        self.line.clear();
+        self.line.append(&mut self.rest);
+        self.at = 0;
+        let room = (LINE_BYTES_MAX + 1 - self.line.len()) as u64;
+        let read = io::Read::take(&mut self.input, room).read_until(b'\n', &mut self.line)?;
+        if self.line.len() > LINE_BYTES_MAX {
+            let Some(cut) = end_of_last_block(&self.line) else {
+                return Err(self.error(
+                    LINE_BYTES_MAX,
+                    1,
+                    format!("the line is longer than {LINE_BYTES_MAX} bytes and not of blocks alone"),
+                    "break it; only blocks may run together at any length",
+                ));
+            };
+            self.rest = self.line.split_off(cut);
+        }
+        Ok(read > 0 || !self.line.is_empty())
     }
 
     fn error(&self, at: usize, width: usize, message: impl Into<String>, help: &'static str) -> ReadError {
+        ReadError::Program { message: message.into(), place: self.place(at, width), help }
+    }
+
+    fn place(&self, at: usize, width: usize) -> Place {
         let line = self.line.strip_suffix(b"\n").unwrap_or(&self.line);
         let line = line.strip_suffix(b"\r").unwrap_or(line);
-        let place = Place::in_line(line, self.line_number, self.line_byte, at.min(line.len()), width);
-        ReadError::Program { message: message.into(), place, help }
+        let mut place = Place::in_line(line, self.line_number, self.line_byte, at.min(line.len()), width);
+        place.column += self.line_column;
+        place
     }
 
     /// Skips `N 12:` of a listing.
@@ -171,25 +194,38 @@ impl<R: BufRead> Reader<R> {
 
     fn stop_word(&mut self) -> Option<&'static str> {
         let rest = &self.line[self.at..];
-        let letters = rest.iter().take_while(|b| b.is_ascii_alphanumeric()).count();
-        let word = match &rest[..letters] {
-            b"DD" | b"dd" | b"Dd" | b"dD" => "DD",
-            b"D" | b"d" => "D",
-            b"E" | b"e" => "E",
-            _ => return None,
-        };
-        let follows = rest[letters..].iter().find(|b| !b.is_ascii_whitespace());
-        if !matches!(follows, None | Some(b';' | b'(' | b'%' | b'B' | b'b' | 0)) {
-            return None;
-        }
-        self.at += letters;
+        let word = ["DD", "D", "E"].into_iter().find(|word| {
+            let Some((start, after)) = rest.split_at_checked(word.len()) else { return false };
+            let ends = matches!(
+                after.first(),
+                None | Some(b' ' | b'\t' | b'\r' | b'\n' | b';' | b'(' | b'%' | b'B' | b'b' | 0 | 0x1A)
+            );
+            start.eq_ignore_ascii_case(word.as_bytes()) && ends
+        })?;
+        self.at += word.len();
         Some(word)
+    }
+
+    /// A row of stars, with or without words between them; a block among them is not decoration.
+    fn row_of_stars(&mut self) -> Result<(), ReadError> {
+        let rest = self.line[self.at..].trim_ascii_end();
+        if holds_block_pattern(rest) {
+            return Err(self.error(
+                self.at,
+                rest.len(),
+                "a block behind a `*`",
+                "put remarks in ( ) or after ;",
+            ));
+        }
+        self.at = self.line.len();
+        Ok(())
     }
 
     /// A line of words: kept out of the program if it is a header, else an error.
     fn header(&mut self) -> Result<(), ReadError> {
         let rest = self.line[self.at..].trim_ascii_end();
-        if !rest.contains(&b'=') {
+        let words = rest.split(|&b| b == b';' || b == b'(').next().unwrap_or_default();
+        if !words.contains(&b'=') || holds_block_pattern(words) {
             return Err(self.error(
                 self.at,
                 rest.len(),
@@ -201,14 +237,14 @@ impl<R: BufRead> Reader<R> {
         Ok(())
     }
 
-    /// The next character that is not white space, over line ends.
+    /// The next character of a block that is not white space, over line ends.
     fn peek(&mut self) -> Result<Option<u8>, ReadError> {
         loop {
             match self.line.get(self.at) {
                 Some(b' ' | b'\t' | b'\r' | 0) => self.at += 1,
                 Some(b'\n') | None => {
                     // The end of the line is looked past only if there is a next one, so that an error has a place.
-                    if self.input.fill_buf()?.is_empty() {
+                    if self.rest.is_empty() && self.input.fill_buf()?.is_empty() {
                         return Ok(None);
                     }
                     self.next_line()?;
@@ -218,12 +254,13 @@ impl<R: BufRead> Reader<R> {
         }
     }
 
+    /// Takes a character of the block into its text.
     fn take(&mut self, byte: u8) {
         self.text.push(byte);
         self.at += 1;
     }
 
-    fn number(&mut self, name: &str) -> Result<i64, ReadError> {
+    fn number(&mut self, name: &str, largest: i64) -> Result<i64, ReadError> {
         let mut value = 0i64;
         let mut start = None;
         while let Some(byte) = self.peek()? {
@@ -243,12 +280,12 @@ impl<R: BufRead> Reader<R> {
             }
             start = start.or(Some(self.at));
             value = value * 10 + i64::from(byte - b'0');
-            if value > COORDINATE_MAX {
+            if value > largest || self.text.len() > BLOCK_BYTES_MAX {
                 let from = start.unwrap_or(self.at).min(self.at);
                 return Err(self.error(
                     from,
                     self.at + 1 - from,
-                    format!("{name} is larger than {COORDINATE_MAX} µm"),
+                    format!("{name} is larger than {largest} µm, or written with too many zeros"),
                     "split the move into shorter blocks",
                 ));
             }
@@ -284,9 +321,7 @@ impl<R: BufRead> Reader<R> {
 
     fn block(&mut self) -> Result<Item, ReadError> {
         self.text.clear();
-        self.blocks += 1;
-        let (line, line_number, line_byte, at) =
-            (self.line_number, self.line_number, self.line_byte, self.at);
+        let (first_line, at) = (self.line_number, self.at);
         if let Some(word) = self.ended_by {
             return Err(self.error(
                 self.at,
@@ -297,9 +332,10 @@ impl<R: BufRead> Reader<R> {
         }
         let pattern = "a 3B block is `B X B Y B J G Z`, such as B579B6617B006617GYL2";
         let mut numbers = [0; 3];
-        for (n, name) in [(0, "X"), (1, "Y"), (2, "J")] {
+        for (n, name, largest) in [(0, "X", COORDINATE_MAX), (1, "Y", COORDINATE_MAX), (2, "J", COUNT_MAX.0)]
+        {
             self.expect("B", |b| b == b'B', pattern)?;
-            numbers[n] = self.number(name)?;
+            numbers[n] = self.number(name, largest)?;
         }
         if self.peek()? == Some(b'B') {
             return Err(self.error(
@@ -328,28 +364,43 @@ impl<R: BufRead> Reader<R> {
         };
         let [x, y, j] = numbers.map(Micrometres);
         let block = Block { x, y, j, g, motion };
-        self.check(&block).map_err(|fault| {
+        Model::Rotated.displacement(&block).map_err(|fault| {
             // A block over several lines is shown by its last one.
-            let (from, width) = if line == self.line_number { (at, self.at - at) } else { (0, self.at) };
-            let (number, byte) = if line == self.line_number {
-                (line_number, line_byte)
-            } else {
-                (self.line_number, self.line_byte)
-            };
-            let text = self.line.strip_suffix(b"\n").unwrap_or(&self.line);
+            let (from, width) =
+                if first_line == self.line_number { (at, self.at - at) } else { (0, self.at) };
             ReadError::Program {
                 message: fault.to_string(),
-                place: Place::in_line(text, number, byte, from, width),
+                place: self.place(from, width),
                 help: "no control can run this block to its end; check G and the digit of Z",
             }
         })?;
         Ok(Item::Block(block))
     }
+}
 
-    /// Whether the two plainest models can run the block to its end; `mirrored` differs only on lines no writer makes.
-    fn check(&self, block: &Block) -> Result<(), Fault> {
-        Model::Rotated.displacement(block).map(|_| ())
+/// Where the last whole block of a piece of line ends, if the piece is of blocks alone.
+fn end_of_last_block(piece: &[u8]) -> Option<usize> {
+    if piece.iter().any(|byte| matches!(byte, b';' | b'(' | b'*' | b'=' | b'%')) {
+        return None;
     }
+    let ends = |pair: &[u8]| matches!(pair, [b'L' | b'l' | b'R' | b'r', b'1'..=b'4']);
+    piece.windows(2).rposition(ends).map(|at| at + 2)
+}
+
+/// Whether words hold three B with nothing but digits and blanks between them: a block, whatever stands around it.
+fn holds_block_pattern(words: &[u8]) -> bool {
+    let mut found = 0;
+    for byte in words {
+        match byte {
+            b'B' | b'b' => found += 1,
+            b'0'..=b'9' | b' ' | b'\t' => {}
+            _ => found = 0,
+        }
+        if found == 3 {
+            return true;
+        }
+    }
+    false
 }
 
 #[cfg(test)]
@@ -419,7 +470,23 @@ mod tests {
         assert!(refusal("B0B0B500GYL1").0.contains("never"));
         assert!(refusal("B1B0B1GXL1 DD B1B0B1GXL1").0.contains("after the stop word"));
         assert!(refusal("B99999999999B0B1GXL1").0.contains("larger"));
+        assert!(refusal("B1000000B0B1000000GXL1").0.contains("J is larger than 999999"));
+        assert!(refusal(&format!("B{}B0B1GXL1", "0".repeat(500))).0.contains("too many zeros"));
         assert!(refusal(&"B".repeat(70_000)).0.contains("longer"));
+        let long = "B9900B0B9900GXL1B9900B0B39600GYNR1".repeat(5000) + "B1B2Q";
+        assert_eq!(texts(&long[..long.len() - 5]).len(), 10_000);
+        let (_, line, column) = refusal(&long);
+        assert_eq!((line, column), (1, 34 * 5000 + 5));
+    }
+
+    #[test]
+    fn a_block_behind_a_percent_sign_or_a_wrong_letter_is_not_skipped() {
+        assert_eq!(texts("%B7B0B7GXL1\n%\n"), ["B7B0B7GXL1"]);
+        assert!(refusal("C5000B0B5000GXL1 ; X = 5\n").0.contains("neither"));
+        assert!(refusal("X = B1B2B3GXL1\n").0.contains("neither"));
+        assert!(refusal("% O1234\n").0.contains("neither"));
+        assert!(refusal("** B9900B0B39600GYNR1 **\n").0.contains("behind a `*`"));
+        assert_eq!(texts("\u{feff}B7B0B7GXL1DB1B0B1GXL1\nDD\n\x1a"), ["B7B0B7GXL1", "B1B0B1GXL1"]);
     }
 
     #[test]

@@ -11,7 +11,6 @@ fn settings(pace: Pace) -> Settings {
         start_timeout: None,
         leader: b"%\n".to_vec(),
         trailer: b"%\n".to_vec(),
-        ends_with_stop_word: true,
     }
 }
 
@@ -96,7 +95,7 @@ fn reset_and_alarm_are_final_in_either_parity() {
         m.handle_transmitted(4, MS);
         m.handle_received(&[0x13, byte, 0x11], 2 * MS);
         assert_eq!(m.phase(), Phase::Ended);
-        let torn = Some(Torn { block: 1, bytes: 2 });
+        let torn = Some(Torn { line: TornLine::Block(1), bytes: 2 });
         assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Failed { failure, torn })));
         assert_eq!(take(&mut m, 3 * MS), b"");
     }
@@ -107,12 +106,61 @@ fn dc3_after_the_last_byte_is_the_end_and_not_a_hold() {
     let mut m = machine();
     m.handle_received(&[0x11], MS);
     m.offer_block(1, b"DD\n");
-    m.finish();
+    m.finish(ProgramEnd::StopWord);
     assert_eq!(take(&mut m, MS), b"%\nDD\n%\n");
     m.handle_received(&[0x13], MS);
-    m.handle_timeout(2 * MS);
+    m.handle_timeout(MS + LISTEN);
     assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Done { trailer_unsent: 0 })));
     assert_eq!(m.tally().holds, 0);
+}
+
+#[test]
+fn an_alarm_just_after_the_last_byte_is_heard() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"DD\n");
+    m.finish(ProgramEnd::StopWord);
+    take(&mut m, MS);
+    m.handle_received(&[0x13, 0x15], 20 * MS);
+    let failure = Failure::ControlAlarm;
+    assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Failed { failure, torn: None })));
+}
+
+#[test]
+fn a_hold_after_the_last_byte_is_known_for_the_end_once_the_source_is_at_its_end() {
+    let mut m = DcCodes::new(Settings { trailer: Vec::new(), ..settings(Pace::unpaced()) }, Duration::ZERO);
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"DD\n");
+    take(&mut m, MS);
+    m.handle_received(&[0x13], MS);
+    assert_eq!(m.phase(), Phase::Held { since: MS });
+    m.finish(ProgramEnd::StopWord);
+    m.handle_timeout(MS + LISTEN);
+    assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Done { trailer_unsent: 0 })));
+}
+
+#[test]
+fn a_torn_stop_word_is_not_called_a_block() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"B1\n");
+    m.offer_block(1, b"DD\n");
+    m.handle_transmitted(6, MS);
+    m.handle_command(Command::StopAtBlock, MS);
+    m.handle_command(Command::StopNow, MS);
+    let torn = Some(Torn { line: TornLine::StopWordAfter(1), bytes: 1 });
+    assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Stopped { torn })));
+}
+
+#[test]
+fn a_link_that_goes_once_all_is_on_the_wire_takes_nothing_with_it() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"DD\n");
+    m.finish(ProgramEnd::StopWord);
+    take(&mut m, MS);
+    m.handle_link_lost(2 * MS);
+    assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Done { trailer_unsent: 0 })));
 }
 
 #[test]
@@ -120,7 +168,7 @@ fn a_control_that_stops_at_the_stop_word_need_not_take_the_trailer() {
     let mut m = machine();
     m.handle_received(&[0x11], MS);
     m.offer_block(1, b"DD\n");
-    m.finish();
+    m.finish(ProgramEnd::StopWord);
     m.handle_transmitted(5, MS);
     m.handle_received(&[0x13], MS);
     assert_eq!(m.poll_timeout(MS), Some(MS + LINGER));
@@ -136,7 +184,7 @@ fn a_hold_at_the_stop_word_is_known_for_the_end_once_the_source_is_at_its_end() 
     m.handle_transmitted(5, MS);
     m.handle_received(&[0x13], MS);
     assert_eq!(m.phase(), Phase::Held { since: MS });
-    m.finish();
+    m.finish(ProgramEnd::StopWord);
     assert_eq!(m.poll_timeout(MS), Some(MS + LINGER));
     m.handle_received(&[0x11], 2 * MS);
     assert_eq!(take(&mut m, 2 * MS), b"%\n");
@@ -144,11 +192,10 @@ fn a_hold_at_the_stop_word_is_known_for_the_end_once_the_source_is_at_its_end() 
 
 #[test]
 fn a_hold_before_the_trailer_without_a_stop_word_is_a_hold() {
-    let mut m =
-        DcCodes::new(Settings { ends_with_stop_word: false, ..settings(Pace::unpaced()) }, Duration::ZERO);
+    let mut m = machine();
     m.handle_received(&[0x11], MS);
     m.offer_block(1, b"B1\n");
-    m.finish();
+    m.finish(ProgramEnd::Block);
     m.handle_transmitted(5, MS);
     m.handle_received(&[0x13], MS);
     assert_eq!(m.phase(), Phase::Held { since: MS });
@@ -177,7 +224,7 @@ fn a_stop_waits_for_the_end_of_the_block_and_a_second_one_does_not() {
     m.handle_command(Command::StopAtBlock, MS);
     assert_eq!(m.phase(), Phase::Held { since: MS });
     m.handle_command(Command::StopNow, MS);
-    let torn = Some(Torn { block: 1, bytes: 2 });
+    let torn = Some(Torn { line: TornLine::Block(1), bytes: 2 });
     assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Stopped { torn })));
 }
 
@@ -196,7 +243,7 @@ fn a_control_that_never_starts_is_waited_for_unless_the_profile_says_how_long() 
 #[test]
 fn no_more_than_the_window_is_handed_over_ahead_of_the_wire() {
     let character = Duration::from_micros(1146);
-    let mut m = DcCodes::new(settings(Pace::free(character, 4 * MS, 10)), Duration::ZERO);
+    let mut m = DcCodes::new(settings(Pace::free(character, 4 * MS, 10, None)), Duration::ZERO);
     m.handle_received(&[0x11], Duration::ZERO);
     m.offer_block(1, &[b'B'; 100]);
     assert_eq!(take(&mut m, Duration::ZERO).len(), 3);
@@ -209,7 +256,7 @@ fn no_more_than_the_window_is_handed_over_ahead_of_the_wire() {
 #[test]
 fn blocks_are_asked_for_only_when_the_window_has_room() {
     let character = Duration::from_micros(1146);
-    let mut m = DcCodes::new(settings(Pace::free(character, 4 * MS, 10)), Duration::ZERO);
+    let mut m = DcCodes::new(settings(Pace::free(character, 4 * MS, 10, None)), Duration::ZERO);
     m.handle_received(&[0x11], Duration::ZERO);
     assert!(m.wants_block(MS));
     m.offer_block(1, &[b'B'; 20]);

@@ -59,7 +59,7 @@ fn consider(stand: Stand, goal: Goal, shape: Shape, first: Position, best: &mut 
     let falling = branch.falling_axis(quarter);
     let g = if u < v { falling } else { other(falling) };
     let bend = match stand.aim {
-        Aim::One(model) => bend(model),
+        Aim::One(model) => model.bend(),
         Aim::Any => Bend::Inward,
     };
     let count = branch.count_to(bend, g, crossed, (u, v));
@@ -180,14 +180,6 @@ pub(super) fn split(arc: &Element) -> Option<(Element, Element)> {
         None => pieces::at_fraction(arc, 0.5),
     };
     Some((pieces::between(arc, start, at), pieces::between(arc, at, end)))
-}
-
-fn bend(model: Model) -> Bend {
-    match model {
-        Model::Rotated | Model::Mirrored => Bend::Inward,
-        Model::Strict => Bend::Outward,
-        Model::Exact => Bend::True,
-    }
 }
 
 fn other(axis: Axis) -> Axis {

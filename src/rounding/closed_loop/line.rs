@@ -1,16 +1,26 @@
 //! The block for a straight line: nearly always the difference between the goal and where the control stands.
 //!
 //! The models part on lines only where X leads with nothing to do: straight along Y, and at 45° in quadrants 2 and 4.
-//! There a lattice point beside the goal serves them all.
+//! There a lattice point beside the goal serves them all, or, where that is too far off, two lines that lean a little.
 
-use super::{Choice, Goal, Stand};
+use super::{Choice, Goal, NoneFits, Stand};
 use crate::formats::three_b::Block;
+use crate::geometry::Point;
 use crate::interpolator::Model;
 use crate::rounding::Aim;
 use crate::units::Position;
 
-/// The best line to the goal; none when no motion brings the control nearer.
-pub(super) fn choose(stand: Stand, goal: Goal) -> Option<Choice> {
+/// The best line to the goal; `Ok(None)` when no motion brings the control nearer.
+pub(super) fn choose(stand: Stand, goal: Goal) -> Result<Option<Choice>, NoneFits> {
+    match nearest(stand, goal) {
+        Some(choice) if goal.admits(choice.end, stand.limit_um()) => Ok(Some(choice)),
+        None if goal.admits(stand.at, stand.limit_um()) => Ok(None),
+        Some(_) | None => Err(NoneFits),
+    }
+}
+
+/// The line that ends nearest to the goal, however near that is; none when no motion brings the control nearer.
+pub(super) fn nearest(stand: Stand, goal: Goal) -> Option<Choice> {
     let straight = goal.at - stand.at;
     if straight == Position::default() {
         return None;
@@ -33,6 +43,18 @@ pub(super) fn choose(stand: Stand, goal: Goal) -> Option<Choice> {
         }
     }
     best.filter(|b| b.error < goal.error(stand.at))
+}
+
+/// A place to go by on the way to the goal, a micron beside the middle of a straight way that no single line serves, mm.
+pub(super) fn detour(stand: Stand, goal: Goal) -> Option<Point> {
+    let way = goal.at - stand.at;
+    let (x, y) = (way.x.0, way.y.0);
+    // Shorter than this there is no middle to go by; the lattice point beside the goal has to do.
+    if x.abs().max(y.abs()) < 4 {
+        return None;
+    }
+    let middle = stand.at + Position::new(x / 2 + 1, y / 2);
+    Some(Point::new(middle.x.millimetres(), middle.y.millimetres()))
 }
 
 /// Where the line ends, if every model aimed at agrees.

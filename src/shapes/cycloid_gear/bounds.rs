@@ -137,6 +137,16 @@ pub enum Impossible {
         /// The bound on the offset, mm.
         bound: f64,
     },
+    /// Inside a cavity the two flanks of a tooth meet before they reach the root.
+    #[error(
+        "offset = {offset} mm is more than half the tooth where it is narrowest: the wire's path would cross itself; it must be above {bound:.4} mm"
+    )]
+    ToothTooNarrow {
+        /// EE, mm.
+        offset: f64,
+        /// The bound on the offset, mm.
+        bound: f64,
+    },
     /// The tip flanks vanish inside a cavity.
     #[error("offset = {offset} mm makes the tip flank vanish: it must be above {bound:.4} mm")]
     TipFlankVanishes {
@@ -155,7 +165,9 @@ impl Impossible {
             Self::WireTooThick { .. } => {
                 "use a thinner wire, or allow trimming (`--trim`, `trim = true`) and accept material left in the root"
             }
-            Self::SpaceClosed { .. } | Self::TipFlankVanishes { .. } => "use a thinner wire",
+            Self::SpaceClosed { .. } | Self::ToothTooNarrow { .. } | Self::TipFlankVanishes { .. } => {
+                "use a thinner wire"
+            }
             Self::Number { .. }
             | Self::RootAtCentre { .. }
             | Self::FlankRadius { .. }
@@ -258,7 +270,7 @@ pub(super) fn offset(gear: &CycloidGear, offset: f64, trim: Trim) -> Result<(), 
     if !offset.is_finite() {
         return Err(Impossible::Number { name: "offset", value: offset, rule: "a finite number" });
     }
-    let Derived { r_c, rho, beta, phi, rho_f, .. } = gear.derived()?;
+    let Derived { r_c, r_f, rho, beta, theta, phi, rho_f } = gear.derived()?;
     if rho_f - offset <= 0.0 {
         if trim == Trim::Refuse {
             return Err(Impossible::WireTooThick { offset, rho_f, wire: 2.0 * rho_f });
@@ -270,11 +282,15 @@ pub(super) fn offset(gear: &CycloidGear, offset: f64, trim: Trim) -> Result<(), 
             return Err(Impossible::SpaceClosed { offset, bound });
         }
     }
+    // The flank begins at this distance from the gear's centre, where the tooth is narrowest.
+    let bound = -(r_f + rho_f) * libm::cos(phi) * libm::tan(theta);
+    if offset <= bound {
+        return Err(Impossible::ToothTooNarrow { offset, bound });
+    }
     if gear.tip_radius + offset <= 0.0 {
         // The trimmed tip stands on the axis where the tip flanks meet; it must lie beyond the top of the flank,
         // which it does while the flank's normal through the centre points to the near side of the axis.
         let across = r_c * libm::sin(beta);
-        let theta = libm::asin(rho / r_c) - beta;
         let bound = across / libm::cos(theta) - rho;
         if offset <= bound {
             return Err(Impossible::TipFlankVanishes { offset, bound });

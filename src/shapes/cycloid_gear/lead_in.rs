@@ -63,7 +63,8 @@ fn meets(a: Point, b: Point, element: &Element) -> bool {
             }
             let t = cross(start - a, e) / across;
             let s = cross(start - a, d) / across;
-            (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s)
+            let within = -SAME_POINT..=1.0 + SAME_POINT;
+            within.contains(&t) && within.contains(&s)
         }
         Element::Arc { start, end, centre, sense } => {
             let (d, m) = (b - a, a - centre);
@@ -83,8 +84,13 @@ fn meets(a: Point, b: Point, element: &Element) -> bool {
 
 /// Whether a point of the circle, seen from its centre, lies on the arc.
 fn on_arc(point: Vector, start: Vector, end: Vector, sense: Sense) -> bool {
-    sweep(start, point, sense) <= sweep(start, end, sense)
+    // A line through a node lies on both elements that meet there, not on neither.
+    let turn = sweep(start, point, sense);
+    turn <= sweep(start, end, sense) + SAME_POINT || turn >= 2.0 * std::f64::consts::PI - SAME_POINT
 }
+
+/// Angles and fractions of a length this near are the same point: far below the micron at any size of gear.
+const SAME_POINT: f64 = 1e-9;
 
 #[cfg(test)]
 mod tests {
@@ -100,6 +106,15 @@ mod tests {
     fn the_centre_slits_a_punch_but_not_a_cavity() {
         assert!(crosses(0.07, LeadIn::Centre));
         assert!(!crosses(-0.07, LeadIn::Centre));
+    }
+
+    #[test]
+    fn a_punch_entered_from_its_centre_is_noticed_for_any_number_of_teeth() {
+        for teeth in 6..400 {
+            let gear = CycloidGear { teeth, ..CycloidGear::default() };
+            let Ok(outline) = gear.outline(0.03, Direction::Clockwise, Trim::Refuse) else { continue };
+            assert!(LeadIn::Centre.crosses_kept_part(&gear, &outline, 0.03).unwrap(), "{teeth} teeth");
+        }
     }
 
     #[test]
