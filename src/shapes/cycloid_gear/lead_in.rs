@@ -3,6 +3,8 @@
 //! With a positive offset the wire runs outside the outline, and the paper's lead-in from the gear's centre slits the
 //! punch; with a negative one the same lead-in lies in the slug of the cavity, where it belongs.
 
+use std::sync::Arc;
+
 use super::{CycloidGear, Direction, Impossible, Outline, Trim};
 use crate::geometry::{Element, Point, Sense, Vector, sweep};
 
@@ -29,8 +31,12 @@ impl LeadIn {
         }
     }
 
-    /// Whether the straight way to the outline's start crosses the part that is kept: the inside of the nominal
-    /// outline for a positive offset, the outside for a negative one. With no offset no side is kept, and nothing is said.
+    /// Whether the wire, on its straight way to the outline's start, cuts into the part that is kept: the inside of the
+    /// nominal outline for a positive offset, the outside for a negative one. With no offset no side is kept, and
+    /// nothing is said.
+    ///
+    /// The wire's centre must not cross the nominal outline, nor its own path before it joins it: there its kerf would
+    /// bite into the part.
     ///
     /// # Errors
     ///
@@ -38,7 +44,7 @@ impl LeadIn {
     pub fn crosses_kept_part(
         self,
         gear: &CycloidGear,
-        outline: &Outline,
+        outline: &Arc<Outline>,
         offset: f64,
     ) -> Result<bool, Impossible> {
         let Some(from) = self.point() else { return Ok(false) };
@@ -47,37 +53,41 @@ impl LeadIn {
         }
         let nominal = gear.outline(0.0, Direction::Clockwise, Trim::Refuse)?;
         let to = outline.start();
-        Ok(nominal.elements().any(|element| meets(from, to, &element)))
+        let elsewhere = |point: Point| (point - to).norm() > JOINS_MM;
+        Ok(nominal.elements().any(|element| !meetings(from, to, &element).is_empty())
+            || outline.elements().any(|element| meetings(from, to, &element).into_iter().any(elsewhere)))
     }
 }
 
-/// Whether the straight line from `a` to `b` meets the element.
-fn meets(a: Point, b: Point, element: &Element) -> bool {
+/// Where the straight line from `a` to `b` meets the element; at most two points.
+fn meetings(a: Point, b: Point, element: &Element) -> Vec<Point> {
+    let d = b - a;
+    let within = -SAME_POINT..=1.0 + SAME_POINT;
     match *element {
         Element::Line { start, end } => {
-            let (d, e) = (b - a, end - start);
+            let e = end - start;
             let cross = |p: Vector, q: Vector| p.x * q.y - p.y * q.x;
             let across = cross(d, e);
             if across == 0.0 {
-                return false;
+                return Vec::new();
             }
             let t = cross(start - a, e) / across;
             let s = cross(start - a, d) / across;
-            let within = -SAME_POINT..=1.0 + SAME_POINT;
-            within.contains(&t) && within.contains(&s)
+            if within.contains(&t) && within.contains(&s) { vec![a + d * t] } else { Vec::new() }
         }
         Element::Arc { start, end, centre, sense } => {
-            let (d, m) = (b - a, a - centre);
-            let radius = start - centre;
+            let (m, radius) = (a - centre, start - centre);
             let (qa, qb, qc) = (d.dot(&d), d.dot(&m), m.dot(&m) - radius.dot(&radius));
             let root = qb * qb - qa * qc;
             if root < 0.0 || qa == 0.0 {
-                return false;
+                return Vec::new();
             }
-            [-root.sqrt(), root.sqrt()].into_iter().any(|r| {
-                let t = (r - qb) / qa;
-                (0.0..=1.0).contains(&t) && on_arc(m + d * t, radius, end - centre, sense)
-            })
+            [-root.sqrt(), root.sqrt()]
+                .into_iter()
+                .map(|r| (r - qb) / qa)
+                .filter(|t| within.contains(t) && on_arc(m + d * *t, radius, end - centre, sense))
+                .map(|t| a + d * t)
+                .collect()
         }
     }
 }
@@ -88,6 +98,9 @@ fn on_arc(point: Vector, start: Vector, end: Vector, sense: Sense) -> bool {
     let turn = sweep(start, point, sense);
     turn <= sweep(start, end, sense) + SAME_POINT || turn >= 2.0 * std::f64::consts::PI - SAME_POINT
 }
+
+/// This near to the outline's start the way in has joined it, mm: a micron, what a control can tell.
+const JOINS_MM: f64 = 0.001;
 
 /// Angles and fractions of a length this near are the same point: far below the micron at any size of gear.
 const SAME_POINT: f64 = 1e-9;
