@@ -69,6 +69,19 @@ impl Tape {
         self.line(&self.leader)
     }
 
+    /// The leader of a program taken up again: an end of block first, so that the control drops what it may have of a torn
+    /// line.
+    ///
+    /// # Errors
+    ///
+    /// When a character has no code.
+    pub fn resumed_leader(&self) -> Result<Vec<u8>, Unencodable> {
+        let mut line = Vec::new();
+        self.encode(b"", &mut line)?;
+        line.extend(self.leader()?);
+        Ok(line)
+    }
+
     /// The trailer as characters for the line.
     ///
     /// # Errors
@@ -113,6 +126,7 @@ mod tests {
         // B 42h and LF 0Ah have two ones; 1 (31h) and C (43h) have three.
         assert_eq!(line, [0x42, 0xB1, 0xC3, 0x0A]);
         assert_eq!(tape(Code::Ascii).leader().unwrap(), b"%\n");
+        assert_eq!(tape(Code::Ascii).resumed_leader().unwrap(), b"\n%\n");
         assert_eq!(tape(Code::Ascii).trailer().unwrap(), b"");
     }
 

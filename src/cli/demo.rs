@@ -17,7 +17,7 @@ use serde_json::json;
 
 use super::connection::{self, Connection, LineOptions};
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Feeding};
+use super::feeding::{self, Feeding, StopFlags};
 use super::source::Source;
 use super::{print, print_json, verdict};
 use crate::drawing::Thinning;
@@ -140,6 +140,7 @@ fn send(prepared: &Prepared, address: &str, directory: &Path) -> Result<crate::l
     profile.baud = BAUD;
     let line = LineOptions { baud: Some(BAUD), ..LineOptions::default() };
     let connection = Connection::plan(Port::Tcp(address.to_owned()), profile, &line);
+    let stops = StopFlags::watch()?;
     let link = connection.open()?;
     let job = Job {
         job: format!("demo-{}", std::process::id()),
@@ -166,6 +167,7 @@ fn send(prepared: &Prepared, address: &str, directory: &Path) -> Result<crate::l
         job: job.job,
         from_block: 1,
         report: None,
+        stops,
         is_resumed: false,
         resume: None,
     };

@@ -191,3 +191,16 @@ impl SourceCode for Failure {
         )))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_without_permission_is_answered_word_for_word() {
+        let error = io::Error::from(io::ErrorKind::PermissionDenied);
+        let failure = Failure::link(&LinkError::from_open("/dev/ttyUSB0", error));
+        assert_eq!(failure.exit, Some(Exit::Link));
+        assert_eq!(failure.render(), include_str!("../../tests/golden/faults/port-denied.txt"));
+    }
+}

@@ -71,6 +71,7 @@ pub(super) struct Feeding<'a> {
     pub(super) job: String,
     pub(super) from_block: u64,
     pub(super) report: Option<PathBuf>,
+    pub(super) stops: StopFlags,
     /// Whether the job was begun before: a torn line may stand in the control.
     pub(super) is_resumed: bool,
     /// A `dripfeed resume …` line up to the block number; none when there is nothing to go on with.
@@ -88,21 +89,12 @@ impl Feeding<'_> {
     /// Feeds to the end, whatever that is.
     #[expect(clippy::disallowed_methods, reason = "the job begins here, by the clock")]
     pub(super) fn feed(mut self) -> Result<Outcome, Failure> {
-        let flags = signals()?;
         let program = self.source.program()?;
         let tape = self.line.profile.tape.clone();
         let encode = |line: Result<Vec<u8>, _>| {
             line.map_err(|error: crate::tape::Unencodable| Failure::new(Exit::Profile, error.to_string()))
         };
-        let mut leader = encode(tape.leader())?;
-        if self.is_resumed {
-            // An end of block first: it makes the control drop what it may have of a torn line.
-            let mut end = Vec::new();
-            encode(tape.encode(b"", &mut end).map(|()| end))?
-                .into_iter()
-                .rev()
-                .for_each(|byte| leader.insert(0, byte));
-        }
+        let leader = encode(if self.is_resumed { tape.resumed_leader() } else { tape.leader() })?;
         let settings = Settings {
             pace: self.line.pace,
             wait_for_start: self.line.profile.wait_for_start,
@@ -149,7 +141,7 @@ impl Feeding<'_> {
                         return Err(std::io::Error::other("the feeding thread ended without a word"));
                     }
                 }
-                for flag in &flags {
+                for flag in &self.stops.0 {
                     if flag.swap(false, Ordering::Relaxed) {
                         shared.stops.fetch_add(1, Ordering::Relaxed);
                     }
@@ -207,21 +199,28 @@ impl Feeding<'_> {
     }
 }
 
-/// A flag for each signal that asks for a stop.
-fn signals() -> Result<Vec<Arc<AtomicBool>>, Failure> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
-    #[cfg(unix)]
-    let wanted = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
-    #[cfg(not(unix))]
-    let wanted = [SIGINT, SIGTERM];
-    let mut flags = Vec::new();
-    for signal in wanted {
-        let flag = Arc::new(AtomicBool::new(false));
-        signal_hook::flag::register(signal, Arc::clone(&flag))
-            .map_err(|error| Failure::new(Exit::Ours, format!("cannot watch for Ctrl-C: {error}")))?;
-        flags.push(flag);
+/// Flags raised by the signals that ask for a stop.
+#[derive(Debug)]
+pub(super) struct StopFlags(Vec<Arc<AtomicBool>>);
+
+impl StopFlags {
+    /// From here on Ctrl-C, SIGTERM and SIGHUP raise a flag instead of ending the process. Called once all questions are
+    /// answered and before anything is written down.
+    pub(super) fn watch() -> Result<Self, Failure> {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        #[cfg(unix)]
+        let wanted = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+        #[cfg(not(unix))]
+        let wanted = [SIGINT, SIGTERM];
+        let mut flags = Vec::new();
+        for signal in wanted {
+            let flag = Arc::new(AtomicBool::new(false));
+            signal_hook::flag::register(signal, Arc::clone(&flag))
+                .map_err(|error| Failure::new(Exit::Ours, format!("cannot watch for Ctrl-C: {error}")))?;
+            flags.push(flag);
+        }
+        Ok(Self(flags))
     }
-    Ok(flags)
 }
 
 /// How often the screen is refreshed and a stop noticed.

@@ -17,7 +17,7 @@ use clap::Args;
 
 use super::connection::{self, Connection, LineOptions};
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Feeding};
+use super::feeding::{self, Feeding, StopFlags};
 use super::jobs;
 use super::question;
 use super::send::quoted;
@@ -134,6 +134,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     question::ask(&format!("Does the wire stand where block {from_block} begins? Go on?"), options.yes)?;
     let resume = options.command(&job.job, &directory);
     let connection = Connection::plan(port, profile, &line);
+    let stops = StopFlags::watch()?;
     let link = connection.open()?;
     let writer = Writer::start().map_err(|error| Failure::new(Exit::Ours, error.to_string()))?;
     let journal = writer.attach(Box::new(file), from_block - 1);
@@ -147,6 +148,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         job: job.job,
         from_block,
         report: options.report,
+        stops,
         is_resumed: true,
         resume: Some(resume),
     }

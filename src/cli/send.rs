@@ -16,7 +16,7 @@ use clap::Args;
 
 use super::connection::{self, Connection, LineOptions};
 use super::failure::{Exit, Failure};
-use super::feeding::{self, Feeding};
+use super::feeding::{self, Feeding, StopFlags};
 use super::jobs;
 use super::question;
 use super::source::{Kind, Source};
@@ -93,6 +93,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
 
     let directory = jobs::directory(options.journal.as_deref())?;
     let connection = Connection::plan(port, profile, &options.line);
+    let stops = StopFlags::watch()?;
     let link = connection.open()?;
     let started = feeding::time_of_day();
     let machine = machine.unwrap_or_else(|| "generic-iso".to_owned());
@@ -129,6 +130,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         job: job.job,
         from_block,
         report: options.report,
+        stops,
         is_resumed: false,
         resume: Some(resume),
     }

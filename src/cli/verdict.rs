@@ -114,7 +114,13 @@ pub(super) fn conclude(
                     "mend the link; the control's own screen says which block it executed last: name the one after it"
                 }
             };
-            let failed = Failure::new(exit, format!("{what}: {after}{}", torn_words(torn))).help(help);
+            let sent = match failure {
+                protocol::Failure::NeverStarted(_) => "; nothing was sent".to_owned(),
+                protocol::Failure::LinkLost
+                | protocol::Failure::ControlReset
+                | protocol::Failure::ControlAlarm => format!(": {after}{}", torn_words(torn)),
+            };
+            let failed = Failure::new(exit, format!("{what}{sent}")).help(help);
             Err(match failure {
                 protocol::Failure::NeverStarted(_) => known(failed),
                 protocol::Failure::LinkLost

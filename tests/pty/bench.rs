@@ -238,3 +238,31 @@ pub(crate) fn said(output: &Output) -> String {
 pub(crate) fn verdict(output: &Output) -> (i32, String) {
     (output.status.code().expect("it ended by itself"), String::from_utf8_lossy(&output.stderr).into_owned())
 }
+
+/// Compares a failure's message with its golden file, `tests/golden/faults/NAME.txt`: from `error:` on, with every number
+/// as N, the scratch directory as DIR, and without the torn block that a fault in mid-block may or may not leave.
+///
+/// Rewritten only by `DRIPFEED_BLESS=1 cargo test --test pty`.
+pub(crate) fn assert_golden(bench: &Bench, name: &str, stderr: &str) {
+    let error = stderr.find("error: ").map(|at| &stderr[at..]).expect("an error message");
+    let mut said = error.replace(&bench.directory.path().display().to_string(), "DIR");
+    if let Some(start) = said.find("; block ")
+        && let Some(length) = said[start..].find(" of it were sent")
+    {
+        said.replace_range(start..start + length + " of it were sent".len(), "");
+    }
+    let mut plain = String::new();
+    for c in said.chars() {
+        match c {
+            '0'..='9' if plain.ends_with('N') => {}
+            '0'..='9' => plain.push('N'),
+            c => plain.push(c),
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/faults").join(format!("{name}.txt"));
+    if std::env::var_os("DRIPFEED_BLESS").is_some_and(|value| value == "1") {
+        std::fs::write(&path, &plain).expect("the golden file can be written");
+    }
+    let golden = std::fs::read_to_string(&path).expect("a golden file, made by DRIPFEED_BLESS=1");
+    assert_eq!(plain, golden, "{name}");
+}

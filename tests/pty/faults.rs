@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use rustix::process::Signal;
 
-use super::bench::{Bench, Mock, finish, pause, said, signal, verdict, wait_until};
+use super::bench::{Bench, Mock, assert_golden, finish, pause, said, signal, verdict, wait_until};
 
 /// Waits until the mock has cut at least so many blocks.
 fn wait_for_blocks(mock: &Mock, blocks: u64) {
@@ -36,6 +36,7 @@ fn a_pulled_cable_ends_with_5_and_the_printed_line_goes_on() {
     let (code, stderr) = verdict(&finish(child));
     assert_eq!(code, 5, "{stderr}");
     assert!(stderr.contains("the link was lost"), "{stderr}");
+    assert_golden(&bench, "cable-pulled", &stderr);
 
     // What reached the control is not known, so no block is named; the line works as it is once the operator names one.
     let mut arguments = resume_line(&stderr);
@@ -69,6 +70,7 @@ fn a_control_that_never_starts_is_waited_for_and_shown_until_the_operator_stops(
     let (code, stderr) = verdict(&bench.run(&limited));
     assert_eq!(code, 5, "{stderr}");
     assert!(stderr.contains("did not ask for the program within 1 s"), "{stderr}");
+    assert_golden(&bench, "control-never-starts", &stderr);
     assert_eq!(mock.dismissed()["bytes"], 0);
 }
 
@@ -82,6 +84,7 @@ fn an_alarm_and_a_reset_of_the_control_end_with_6_and_say_which() {
         let (code, stderr) = verdict(&bench.run(&["send", &part, "--port", &port, "--baud", "19200"]));
         assert_eq!(code, 6, "{stderr}");
         assert!(stderr.contains(words), "{stderr}");
+        assert_golden(&bench, &format!("control{fault}"), &stderr);
         resume_line(&stderr);
     }
 }
@@ -129,6 +132,7 @@ fn a_second_sender_on_one_port_is_refused() {
     let (code, stderr) = verdict(&bench.run(&send));
     assert_eq!(code, 5, "{stderr}");
     assert!(stderr.contains("is in use"), "{stderr}");
+    assert_golden(&bench, "port-busy", &stderr);
     first.kill().unwrap();
     first.wait().unwrap();
 }
@@ -170,6 +174,7 @@ fn a_disk_that_is_full_before_the_job_sends_nothing() {
     let (code, stderr) = verdict(&output);
     assert_eq!(code, 1, "{stderr}");
     assert!(stderr.contains("the journal") && stderr.contains("nothing was sent"), "{stderr}");
+    assert_golden(&bench, "disk-full-before", &stderr);
     assert_eq!(mock.dismissed()["bytes"], 0);
 }
 
@@ -190,6 +195,7 @@ fn a_stream_with_a_bad_block_stops_before_it() {
     let (code, stderr) = verdict(&finish(child));
     assert_eq!(code, 3, "{stderr}");
     assert!(stderr.contains("block 3 cannot be made and was not sent"), "{stderr}");
+    assert_golden(&bench, "stream-bad-block", &stderr);
     assert!(stderr.contains(":3:7]") && stderr.contains("expected B, found `Q`"), "{stderr}");
     let status = mock.settled();
     assert_eq!((&status["blocks"], &status["torn"]), (&2.into(), &0.into()), "{status}");
@@ -304,6 +310,7 @@ fn a_part_changed_since_is_refused_at_resume() {
     let (code, stderr) = verdict(&bench.run(&["resume", "--from-block", "21", "--yes"]));
     assert_eq!(code, 3, "{stderr}");
     assert!(stderr.contains("differs within blocks 1 to 16"), "{stderr}");
+    assert_golden(&bench, "resume-changed-part", &stderr);
 }
 
 #[test]
