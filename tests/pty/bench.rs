@@ -259,6 +259,8 @@ pub(crate) fn assert_golden(bench: &Bench, name: &str, stderr: &str) {
             c => plain.push(c),
         }
     }
+    // A second job within the same second has a number behind its time.
+    let plain = plain.replace("-N-N", "-N");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/faults").join(format!("{name}.txt"));
     if std::env::var_os("DRIPFEED_BLESS").is_some_and(|value| value == "1") {
         std::fs::write(&path, &plain).expect("the golden file can be written");
