@@ -25,19 +25,7 @@ fn dice(seed: u64, n: u64) -> u64 {
 fn kill_and_resume(seed: u64, whole: &serde_json::Value, struck: &mut Struck) {
     let bench = Bench::new();
     let part = bench.gear(12);
-    // The overrun is not what is tested here, and a killed sender cannot obey a DC3.
-    let mock = bench.mock_on_pty(&[
-        "--baud",
-        "38400",
-        "--overrun-limit",
-        "200",
-        "--buffer",
-        "512",
-        "--xoff-at",
-        "192",
-        "--xon-at",
-        "64",
-    ]);
+    let mock = bench.mock_on_pty(&["--baud", "38400"]);
     let port = mock.port.clone();
     let line = ["--port", &port, "--baud", "38400"];
     let mut arguments = vec!["send", &part];
