@@ -1,7 +1,7 @@
 //! Everything that can go wrong with a job, each with its own visible outcome.
 
 use std::io::Write;
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 use std::time::Duration;
 
 use rustix::process::Signal;
@@ -11,6 +11,12 @@ use super::bench::{Bench, Mock, assert_golden, finish, pause, said, signal, verd
 /// Waits until the mock has cut at least so many blocks.
 fn wait_for_blocks(mock: &Mock, blocks: u64) {
     wait_until("blocks are cut", || mock.status()["blocks"].as_u64().unwrap_or(0) >= blocks);
+}
+
+/// A sender on its way, paced at 9600 baud.
+fn send_at_9600(bench: &Bench, part: &str, port: &str) -> Child {
+    let mut command = bench.dripfeed(&["send", part, "--port", port, "--baud", "9600"]);
+    command.stderr(Stdio::piped()).spawn().unwrap()
 }
 
 /// The resume line a failure printed, as words.
@@ -26,11 +32,7 @@ fn a_pulled_cable_ends_with_5_and_the_printed_line_goes_on() {
     let part = bench.gear(12);
     let mock = bench.mock_on_tcp(&["--baud", "9600"]);
     let port = mock.port.clone();
-    let child = bench
-        .dripfeed(&["send", &part, "--port", &port, "--baud", "9600"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let child = send_at_9600(&bench, &part, &port);
     wait_for_blocks(&mock, 3);
     mock.killed();
     let (code, stderr) = verdict(&finish(child));
@@ -96,11 +98,7 @@ fn ctrl_c_stops_at_the_end_of_a_block_and_the_job_goes_on_from_there() {
         let part = bench.gear(12);
         let mock = bench.mock_on_pty(&["--baud", "9600"]);
         let port = mock.port.clone();
-        let child = bench
-            .dripfeed(&["send", &part, "--port", &port, "--baud", "9600"])
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let child = send_at_9600(&bench, &part, &port);
         wait_for_blocks(&mock, 3);
         signal(&child, kind);
         let (code, stderr) = verdict(&finish(child));
@@ -297,11 +295,7 @@ fn a_part_changed_since_is_refused_at_resume() {
     let part = bench.gear(12);
     let mock = bench.mock_on_pty(&["--baud", "9600"]);
     let port = mock.port.clone();
-    let child = bench
-        .dripfeed(&["send", &part, "--port", &port, "--baud", "9600"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let child = send_at_9600(&bench, &part, &port);
     wait_for_blocks(&mock, 20);
     signal(&child, Signal::INT);
     finish(child);
@@ -319,11 +313,7 @@ fn resume_asks_for_what_only_the_operator_knows() {
     let part = bench.gear(12);
     let mock = bench.mock_on_pty(&["--baud", "9600"]);
     let port = mock.port.clone();
-    let child = bench
-        .dripfeed(&["send", &part, "--port", &port, "--baud", "9600"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let child = send_at_9600(&bench, &part, &port);
     wait_for_blocks(&mock, 5);
     signal(&child, Signal::INT);
     finish(child);
