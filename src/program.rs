@@ -7,7 +7,8 @@ use std::io::BufRead;
 
 use thiserror::Error;
 
-use crate::formats::three_b::read::{Item, ReadError, Reader};
+use crate::formats::ReadError;
+use crate::formats::three_b::read::{Item, Reader};
 use crate::formats::three_b::{Block, Style};
 use crate::part::Prepared;
 use crate::rounding::Made;

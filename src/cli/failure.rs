@@ -9,7 +9,7 @@ use miette::{
     SourceCode, SourceSpan, SpanContents,
 };
 
-use crate::formats::three_b::read::ReadError;
+use crate::formats::ReadError;
 use crate::journal::writer::JournalError;
 use crate::keys::KeyError;
 use crate::link::LinkError;

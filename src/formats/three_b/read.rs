@@ -7,9 +7,8 @@
 
 use std::io::{self, BufRead};
 
-use thiserror::Error;
-
 use super::{Axis, Block, COUNT_MAX, Motion, Quadrant};
+use crate::formats::ReadError;
 use crate::geometry::Sense;
 use crate::interpolator::{COORDINATE_MAX, Model};
 use crate::place::Place;
@@ -28,25 +27,6 @@ pub enum Item {
     Block(Block),
     /// `DD`, `D` or `E`.
     StopWord(&'static str),
-}
-
-/// What is wrong with a program.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// The source failed.
-    #[error("the program could not be read")]
-    Io(#[from] io::Error),
-    /// Something in it is not 3B.
-    #[error("{message}")]
-    Program {
-        /// The rule broken.
-        message: String,
-        /// Where.
-        place: Place,
-        /// What to do about it.
-        help: &'static str,
-    },
 }
 
 /// Reads a 3B program item by item.
@@ -162,7 +142,7 @@ impl<R: BufRead> Reader<R> {
     }
 
     fn error(&self, at: usize, width: usize, message: impl Into<String>, help: &'static str) -> ReadError {
-        ReadError::Program { message: message.into(), place: self.place(at, width), help }
+        ReadError::Program { message: message.into(), place: self.place(at, width), help: help.into() }
     }
 
     fn place(&self, at: usize, width: usize) -> Place {
@@ -371,7 +351,7 @@ impl<R: BufRead> Reader<R> {
             ReadError::Program {
                 message: fault.to_string(),
                 place: self.place(from, width),
-                help: "no control can run this block to its end; check G and the digit of Z",
+                help: "no control can run this block to its end; check G and the digit of Z".into(),
             }
         })?;
         Ok(Item::Block(block))

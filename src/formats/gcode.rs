@@ -1,0 +1,1 @@
+//! G-code as wire cutters speak it.
