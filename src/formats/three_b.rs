@@ -141,6 +141,16 @@ impl Block {
         };
         Position::new(sx * self.x.0, sy * self.y.0)
     }
+
+    /// X or Y, whichever lies along the counting axis.
+    #[must_use]
+    #[inline]
+    pub fn counted(&self) -> Micrometres {
+        match self.g {
+            Axis::X => self.x,
+            Axis::Y => self.y,
+        }
+    }
 }
 
 /// The digit of a line: 0° ≤ θ < 90° is 1, and so on round.
