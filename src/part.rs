@@ -8,6 +8,7 @@ pub mod file;
 use std::sync::Arc;
 
 use crate::formats::three_b::Style;
+pub use crate::formats::three_b::StopWord;
 use crate::geometry::{Element, Point};
 use crate::interpolator::Model;
 use crate::rounding::closed_loop::ClosedLoop;
@@ -24,33 +25,6 @@ pub enum Rounding {
     ClosedLoop,
     /// Every block by itself, as in the 1990 paper.
     PerBlock,
-}
-
-/// What a program ends with.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum StopWord {
-    /// `DD`: end of program.
-    #[default]
-    DD,
-    /// `D`: pause.
-    D,
-    /// `E`: end.
-    E,
-    /// No stop word.
-    None,
-}
-
-impl StopWord {
-    /// The word as it is written.
-    #[must_use]
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::DD => "DD",
-            Self::D => "D",
-            Self::E => "E",
-            Self::None => "",
-        }
-    }
 }
 
 /// A part with all its values.
