@@ -7,8 +7,8 @@ pub mod file;
 
 use std::sync::Arc;
 
-use crate::formats::three_b::Style;
 pub use crate::formats::three_b::StopWord;
+use crate::formats::three_b::Style;
 use crate::geometry::{Element, Point};
 use crate::interpolator::Model;
 use crate::rounding::closed_loop::ClosedLoop;

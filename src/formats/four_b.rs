@@ -7,9 +7,13 @@
 //!
 //! *Unverified:* the field order with the flag behind G, the spelling of the taper ratio, a flag without a fourth B.
 
+mod read;
+
 use crate::formats::three_b;
 use crate::motion::Flag;
 use crate::units::Micrometres;
+
+pub use read::{Entry, Reader};
 
 /// One block of a 4B program.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

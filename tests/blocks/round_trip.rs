@@ -81,7 +81,8 @@ fn single(text: &str, aim: Aim) -> String {
 
 #[test]
 fn a_tie_keeps_its_digit_and_its_axis() {
-    for block in ["B500B500B000500GYL1", "B500B500B000500GXL2", "B500B500B000500GYL3", "B500B500B000500GXL4"] {
+    for block in ["B500B500B000500GYL1", "B500B500B000500GXL2", "B500B500B000500GYL3", "B500B500B000500GXL4"]
+    {
         assert_eq!(single(block, Aim::One(Model::Rotated)), format!("{block}\nDD\n"));
     }
 }

@@ -151,7 +151,8 @@ impl<R: io::Read> Motions<R> {
         self.at = round.start + piece_end.unwrap_or_default();
         let centre = millimetres(round.start - round.block.signed());
         let (from, to) = (millimetres(start), millimetres(self.at));
-        let motion = self.moves(Element::Arc { start: from, end: to, centre, sense: round.sense }, round.flag);
+        let motion =
+            self.moves(Element::Arc { start: from, end: to, centre, sense: round.sense }, round.flag);
         self.round = (round.told < round.pieces).then_some(round);
         motion
     }
@@ -222,7 +223,8 @@ fn millimetres(at: Position) -> Point {
 fn counts_as(digits: &[u8], block: u64) -> bool {
     let mut number = 0u64;
     for digit in digits {
-        let Some(next) = number.checked_mul(10).and_then(|n| n.checked_add(u64::from(digit.wrapping_sub(b'0'))))
+        let Some(next) =
+            number.checked_mul(10).and_then(|n| n.checked_add(u64::from(digit.wrapping_sub(b'0'))))
         else {
             return false;
         };

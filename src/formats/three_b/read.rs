@@ -23,8 +23,8 @@ use crate::motion::Flag;
 use crate::place::{Place, Spot};
 use crate::units::Micrometres;
 
-use pieces::Pieces;
 pub use pieces::LINE_BYTES_MAX;
+use pieces::Pieces;
 
 /// Something of a 3B program.
 #[derive(Clone, Debug, PartialEq)]

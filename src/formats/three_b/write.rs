@@ -115,7 +115,11 @@ impl Writer {
         text: &mut Vec<u8>,
     ) -> Result<(), WriteError> {
         if self.ended {
-            return Err(refusal("a motion after the end of the program", spot, "put one program in one file"));
+            return Err(refusal(
+                "a motion after the end of the program",
+                spot,
+                "put one program in one file",
+            ));
         }
         within_reach(&element, spot)?;
         let (form, blocks, number) = (self.form, &mut self.blocks, &mut self.number);
@@ -270,4 +274,182 @@ pub(in crate::formats) fn refusal(
     help: impl Into<Cow<'static, str>>,
 ) -> WriteError {
     WriteError { message: message.into(), spot, help: help.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::Writer as _;
+    use crate::formats::three_b::motions::Motions;
+    use crate::interpolator::Model;
+    use crate::motion::{Flag, Side};
+
+    fn motion(act: Act) -> Motion {
+        Motion { act, block: 1, spot: Spot { byte: 7, line: 2, column: 3 } }
+    }
+
+    fn line(travel: Travel, from: (f64, f64), to: (f64, f64)) -> Motion {
+        let element = Element::Line { start: Point::new(from.0, from.1), end: Point::new(to.0, to.1) };
+        motion(Act::Move { travel, element, upper: None, flag: None })
+    }
+
+    fn write(form: Form, motions: &[Motion]) -> Result<(String, Writer), WriteError> {
+        let (mut writer, mut text) = (Writer::new(form), Vec::new());
+        for motion in motions {
+            writer.write(motion, &mut text)?;
+        }
+        writer.finish(&mut text)?;
+        Ok((String::from_utf8_lossy(&text).into_owned(), writer))
+    }
+
+    fn lost(writer: &Writer) -> Vec<(&'static str, u64)> {
+        writer.lost().iter().map(|loss| (loss.kind, loss.count)).collect()
+    }
+
+    #[test]
+    fn between_contours_the_control_stops_runs_and_stops() {
+        use Travel::{Cut, Rapid};
+        let motions = [
+            line(Rapid, (0.0, 0.0), (2.0, 1.0)),
+            line(Cut, (2.0, 1.0), (3.0, 1.0)),
+            line(Cut, (3.0, 1.0), (2.0, 1.0)),
+            line(Rapid, (2.0, 1.0), (2.0, 4.0)),
+            line(Rapid, (2.0, 4.0), (0.0, 4.0)),
+            line(Cut, (0.0, 4.0), (1.0, 4.0)),
+            motion(Act::Stop(Stop::Pause)),
+            line(Rapid, (1.0, 4.0), (0.0, 4.0)),
+            motion(Act::Stop(Stop::End)),
+        ];
+        let form = Form { aim: Aim::One(Model::Rotated), ..Form::default() };
+        let (text, writer) = write(form, &motions).unwrap();
+        let expected = [
+            "B1000B0B001000GXL1",
+            "B1000B0B001000GXL3",
+            "D",
+            "B0B3000B003000GYL2",
+            "B2000B0B002000GXL3",
+            "D",
+            "B1000B0B001000GXL1",
+            "D",
+            "B1000B0B001000GXL3",
+            "DD",
+        ];
+        assert_eq!(text.lines().collect::<Vec<_>>(), expected);
+        assert_eq!(writer.start_hole(), Some(Point::new(2.0, 1.0)));
+        assert_eq!(lost(&writer), [("way from the program's zero to the start hole", 1)]);
+        assert_eq!(writer.stands(), Position::new(0, 4000));
+        // What is said between contours survives reading and writing.
+        let again: Vec<Motion> =
+            Motions::of_three_b(text.as_bytes(), Model::Rotated).map(|motion| motion.unwrap()).collect();
+        assert_eq!(write(form, &again).unwrap().0, text);
+        let commented = write(Form { remarks: Remarks::Brackets, ..form }, &motions[..2]).unwrap().0;
+        assert_eq!(commented, "( start hole at X 2.000 Y 1.000 )\nB1000B0B001000GXL1\nDD\n");
+    }
+
+    #[test]
+    fn a_contour_closes_on_the_micron_where_it_opened() {
+        let third = 1.0 / 3.0;
+        let nodes = [(0.0, 0.0), (third, third), (7.0 * third, 0.1), (2.0, 5.0 * third), (third, third)];
+        let mut motions: Vec<Motion> =
+            nodes.windows(2).map(|pair| line(Travel::Cut, pair[0], pair[1])).collect();
+        for aim in [Aim::Any, Aim::One(Model::Rotated), Aim::One(Model::Mirrored)] {
+            let form = Form { aim, ..Form::default() };
+            let opened = write(form, &motions[..1]).unwrap().1.stands();
+            assert_eq!(write(form, &motions).unwrap().1.stands(), opened, "{aim:?}");
+        }
+        motions.push(line(Travel::Cut, nodes[1], nodes[0]));
+        assert_eq!(write(Form::default(), &motions).unwrap().1.stands(), Position::new(0, 0));
+    }
+
+    #[test]
+    fn what_3b_has_no_word_for_is_refused_with_its_place() {
+        let element = Element::Line { start: Point::origin(), end: Point::new(1.0, 0.0) };
+        let moved = |upper, flag| Act::Move { travel: Travel::Cut, element, upper, flag };
+        let offset = Offset::On { side: Side::Left, distance: Some(0.1), register: None };
+        for (act, wanted) in [
+            (Act::Offset(offset), "adds no offset"),
+            (Act::Taper(Taper::On { side: Side::Right, angle: 1.0 }), "no word for a taper"),
+            (moved(Some(element), None), "moves them apart"),
+            (moved(None, Some(Flag::D)), "a flag asks"),
+        ] {
+            let refused = write(Form::default(), &[motion(act)]).unwrap_err();
+            assert!(refused.message.contains(wanted), "{refused}");
+            assert_eq!((refused.spot.line, refused.spot.column), (2, 3));
+            assert!(!refused.help.is_empty());
+        }
+        let off = [Act::Offset(Offset::Off), Act::Taper(Taper::Off)].map(motion);
+        assert_eq!(write(Form::default(), &off).unwrap().0, "DD\n");
+        let after_end = [motion(Act::Stop(Stop::End)), line(Travel::Cut, (0.0, 0.0), (1.0, 0.0))];
+        assert!(write(Form::default(), &after_end).unwrap_err().message.contains("after the end"));
+        for (from, to) in
+            [((0.0, 0.0), (1.1e6, 0.0)), ((f64::NAN, 0.0), (1.0, 0.0)), ((0.0, 0.0), (0.0, f64::INFINITY))]
+        {
+            assert!(write(Form::default(), &[line(Travel::Cut, from, to)]).is_err(), "{to:?}");
+        }
+        let gap = [line(Travel::Cut, (0.0, 0.0), (1.0, 0.0)), line(Travel::Cut, (1.5, 0.0), (2.0, 0.0))];
+        assert!(write(Form::default(), &gap).unwrap_err().message.contains("ended at (1.000, 0.000)"));
+    }
+
+    #[test]
+    fn what_is_left_out_is_counted_by_kind() {
+        let words = |text: &[u8]| Box::<[u8]>::from(text);
+        let acts = [
+            Act::Comment(words(b"one")),
+            Act::Comment(words(b"two")),
+            Act::Header(words(b"%")),
+            Act::Word(words(b"C001")),
+            Act::Word(words(b"N12")),
+            Act::Unknown(words(b"Q7")),
+            Act::Dwell(0.5),
+            Act::Stop(Stop::Optional),
+        ];
+        let motions = acts.map(motion);
+        let (text, writer) = write(Form::default(), &motions).unwrap();
+        assert_eq!(text, "D\nDD\n");
+        let optional = "stop on request (M01), written as a stop in any case (D)";
+        let kinds = ["comment", "header line", "word", "line number", "unknown word", "dwell", optional];
+        let expected: Vec<_> =
+            kinds.into_iter().map(|kind| (kind, if kind == "comment" { 2 } else { 1 })).collect();
+        assert_eq!(lost(&writer), expected);
+        assert_eq!(writer.lost().iter().next().unwrap().first.line, 2);
+    }
+
+    #[test]
+    fn comments_headers_and_numbers_survive_where_there_is_room_for_them() {
+        let listing = "%\n*****\nStart Point = 0.0, 0.0 ; X , Y\n(one (of two)\nN   1: B5000B0B005000GXL1\n; 5.000, 0.000\n\
+                       N 40: B0B5000B005000GYL2\n(\u{96f6}\u{4ef6})\nDD\n%\n";
+        let read = |text: &str| -> Vec<Motion> {
+            let motions = Motions::of_three_b(text.as_bytes(), Model::Rotated);
+            motions.map(|motion| Motion { spot: Spot::default(), ..motion.unwrap() }).collect()
+        };
+        for remarks in [Remarks::Brackets, Remarks::Semicolons] {
+            let aim = Aim::One(Model::Rotated);
+            let form = Form { remarks, numbers: true, aim, ..Form::default() };
+            let (text, writer) = write(form, &read(listing)).unwrap();
+            assert!(writer.lost().is_empty(), "{:?}", writer.lost());
+            assert_eq!(read(&text), read(listing), "{text}");
+            assert!(text.contains("N   1: B5000B0") && text.contains("N 40: B0B5000"), "{text}");
+        }
+        // A header of another format would be no header here.
+        let foreign = [motion(Act::Header(b"O1234".as_slice().into()))];
+        let form = Form { remarks: Remarks::Brackets, ..Form::default() };
+        assert_eq!(write(form, &foreign).unwrap().0, "(O1234)\nDD\n");
+    }
+
+    #[test]
+    fn an_arc_flatter_than_any_block_can_say_is_cut_as_its_chords() {
+        let radius = 2e6;
+        let half = 50.0f64;
+        let rise = radius - (radius * radius - half * half).sqrt();
+        let arc = Element::Arc {
+            start: Point::new(-half, 0.0),
+            end: Point::new(half, 0.0),
+            centre: Point::new(0.0, rise - radius),
+            sense: crate::geometry::Sense::Clockwise,
+        };
+        let act = Act::Move { travel: Travel::Cut, element: arc, upper: None, flag: None };
+        let (text, writer) = write(Form::default(), &[motion(act)]).unwrap();
+        assert!(text.lines().count() > 1 && !text.contains('R'), "{text}");
+        assert_eq!(writer.stands(), Position::new(50_000, 0));
+    }
 }

@@ -36,8 +36,11 @@ impl<R: io::Read> Reader<R> {
             self.expect("B", |b| b == b'B', pattern)?;
             numbers[n] = self.number(name, largest)?;
         }
-        if self.peek()? == Some(b'B') {
-            self.fourth()?;
+        match self.peek()? {
+            Some(b'B') => self.fourth()?,
+            // Whether a ratio stands behind a fourth B or in its place, the paper leaves open.
+            Some(b'L') if self.grammar == Grammar::FourB => self.taper_ratio()?,
+            Some(_) | None => {}
         }
         self.flag()?;
         let g_letter = self.peek()? == Some(b'G');
@@ -92,9 +95,7 @@ impl<R: io::Read> Reader<R> {
         }
         self.take(b'B');
         if self.peek()? == Some(b'L') {
-            self.take(b'L');
-            self.beyond.fourth = Some(Fourth::Ratio(self.ratio()?));
-            return Ok(());
+            return self.taper_ratio();
         }
         let from = self.spelled.len();
         let radius = self.number("R", COORDINATE_MAX)?;
@@ -104,8 +105,9 @@ impl<R: io::Read> Reader<R> {
         Ok(())
     }
 
-    /// A ratio of taper: decimal digits, with or without a point.
-    fn ratio(&mut self) -> Result<Ratio, ReadError> {
+    /// `L` and a ratio of taper: decimal digits, with or without a point.
+    fn taper_ratio(&mut self) -> Result<(), ReadError> {
+        self.take(b'L');
         let from = self.spelled.len();
         while let Some(byte) = self.peek()? {
             let taken = self.spelled.get(from..).unwrap_or_default();
@@ -116,10 +118,12 @@ impl<R: io::Read> Reader<R> {
             self.take(byte);
         }
         let taken = self.spelled.get(from..).unwrap_or_default();
-        Ratio::parse(taken).ok_or_else(|| {
+        let Some(ratio) = Ratio::parse(taken) else {
             let help = "the ratio is written like L0.5: up to eight digits and six decimals";
-            self.error(self.at, 1, "L without a ratio of taper", help)
-        })
+            return Err(self.error(self.at, 1, "L without a ratio of taper", help));
+        };
+        self.beyond.fourth = Some(Fourth::Ratio(ratio));
+        Ok(())
     }
 
     /// The flag, if one stands here.
