@@ -74,7 +74,10 @@ pub(crate) fn account<B>(
             }
             Err(ReadError::Program { place, message, help }) => {
                 // What is wrong is no earlier than what was read, and no later than the source.
-                assert!(read as u64 <= place.byte && place.byte <= bytes.len() as u64, "{message}: {place:?}");
+                assert!(
+                    read as u64 <= place.byte && place.byte <= bytes.len() as u64,
+                    "{message}: {place:?}"
+                );
                 assert!(place.line >= 1 && place.column >= 1 && place.width >= 1, "{place:?}");
                 assert!(place.caret < place.excerpt.len(), "{place:?}");
                 assert!(!message.is_empty() && !help.is_empty());

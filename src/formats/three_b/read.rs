@@ -5,8 +5,7 @@
 //! comments (`; …`, `( … )`, rows of `*`) and header lines (`Start Point = …`). What is none of these is an error with
 //! its place: nothing a file says is skipped in silence.
 //!
-//! A block written without blanks, in capitals, within one line is taken in one go (`quick`); anything else, and
-//! whatever is wrong, goes character by character (`careful`). 4B is read by [`crate::formats::four_b`] through the same
+//! A block within one line is taken in one go (`quick`); one over several lines, and whatever is wrong, goes character by character (`careful`). 4B is read by [`crate::formats::four_b`] through the same
 //! reader; here its blocks are recognised and refused.
 
 mod around;
@@ -211,7 +210,7 @@ impl<R: io::Read> Reader<R> {
                 self.at += 1;
                 continue;
             }
-            if byte == b'B'
+            if matches!(byte, b'B' | b'b')
                 && let Some(block) = self.quick()
             {
                 return Ok(Some(Entry::Item(Item::Block(block))));
@@ -226,13 +225,25 @@ impl<R: io::Read> Reader<R> {
         if self.ended_by.is_some() {
             return None;
         }
-        let (block, beyond, length) = match self.grammar {
-            Grammar::ThreeB => quick::block::<false>(self.pieces.piece().get(self.at..)?)?,
-            Grammar::FourB => quick::block::<true>(self.pieces.piece().get(self.at..)?)?,
+        let read = match self.grammar {
+            Grammar::ThreeB => quick::block::<false>,
+            Grammar::FourB => quick::block::<true>,
+        };
+        let line = self.pieces.piece().get(self.at..)?;
+        let (text, length, (block, beyond)) = match read(line) {
+            Some((block, beyond, length)) => {
+                (Text::AsItStands { from: self.at, to: self.at + length }, length, (block, beyond))
+            }
+            None => {
+                quick::squeeze(line, &mut self.spelled);
+                let (block, beyond, length) = read(&self.spelled)?;
+                self.spelled.truncate(length);
+                (Text::Spelled, quick::spread(line, length), (block, beyond))
+            }
         };
         self.begun = self.spot_at(self.at);
         self.beyond = beyond;
-        self.text = Text::AsItStands { from: self.at, to: self.at + length };
+        self.text = text;
         self.at += length;
         Some(block)
     }

@@ -1,4 +1,4 @@
-//! A block written plainly, in capitals, within one line: taken in one go.
+//! A block written plainly, within one line: taken in one go, in capitals as it stands, else once blanks are squeezed out.
 //!
 //! Whatever is not such a block, or is one that might be wrong, is left to `careful`, which says what it is.
 
@@ -78,6 +78,24 @@ fn number(line: &[u8], at: &mut usize, digits_max: usize) -> Option<Micrometres>
     None
 }
 
+/// The start of a line without blanks and in capitals, as much of it as a plain block may take.
+pub(super) fn squeeze(line: &[u8], text: &mut Vec<u8>) {
+    text.clear();
+    let line = &line[..line.len().min(SQUEEZED_BYTES)];
+    let words = line.iter().take_while(|b| !matches!(b, b'\n' | b';' | b'('));
+    text.extend(words.filter(|b| !blank(**b)).map(u8::to_ascii_uppercase));
+}
+
+/// The length on the line of what was `length` bytes long without blanks.
+pub(super) fn spread(line: &[u8], length: usize) -> usize {
+    let mut words = line.iter().enumerate().filter(|(_, b)| !blank(**b));
+    words.nth(length - 1).map_or(line.len(), |(at, _)| at + 1)
+}
+
+fn blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | b'\r' | 0)
+}
+
 #[inline]
 fn flag(line: &[u8], at: &mut usize, beyond: &mut Beyond) -> Option<()> {
     let (flag, length) = match line.get(*at..)? {
@@ -96,3 +114,5 @@ fn flag(line: &[u8], at: &mut usize, beyond: &mut Beyond) -> Option<()> {
 const COORDINATE_DIGITS: usize = 9;
 /// So many digits cannot say more than [`crate::formats::three_b::COUNT_MAX`].
 const COUNT_DIGITS: usize = 6;
+/// Enough for a block with every number and a blank or two between its words.
+const SQUEEZED_BYTES: usize = 96;
