@@ -7,6 +7,7 @@ pub mod file;
 
 use std::sync::Arc;
 
+pub use crate::formats::three_b::StopWord;
 use crate::formats::three_b::Style;
 use crate::geometry::{Element, Point};
 use crate::interpolator::Model;
@@ -26,33 +27,6 @@ pub enum Rounding {
     ClosedLoop,
     /// Every block by itself, as in the 1990 paper.
     PerBlock,
-}
-
-/// What a program ends with.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum StopWord {
-    /// `DD`: end of program.
-    #[default]
-    DD,
-    /// `D`: pause.
-    D,
-    /// `E`: end.
-    E,
-    /// No stop word.
-    None,
-}
-
-impl StopWord {
-    /// The word as it is written.
-    #[must_use]
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::DD => "DD",
-            Self::D => "D",
-            Self::E => "E",
-            Self::None => "",
-        }
-    }
 }
 
 /// A part with all its values.

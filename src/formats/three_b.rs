@@ -7,7 +7,9 @@
 //!
 //! What a control *does* with a block is `interpolator`; choosing the numbers is `rounding`; reading is [`read`].
 
+pub mod motions;
 pub mod read;
+pub mod write;
 
 use crate::geometry::Sense;
 use crate::units::{Micrometres, Position};
@@ -141,6 +143,16 @@ impl Block {
         };
         Position::new(sx * self.x.0, sy * self.y.0)
     }
+
+    /// X or Y, whichever lies along the counting axis.
+    #[must_use]
+    #[inline]
+    pub fn counted(&self) -> Micrometres {
+        match self.g {
+            Axis::X => self.x,
+            Axis::Y => self.y,
+        }
+    }
 }
 
 /// The digit of a line: 0° ≤ θ < 90° is 1, and so on round.
@@ -163,6 +175,33 @@ fn arc_quadrant(start: Position, sense: Sense) -> Quadrant {
             (x, y) if x <= 0 && y < 0 => Quadrant::Third,
             _ => Quadrant::Fourth,
         },
+    }
+}
+
+/// The word a program ends with.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum StopWord {
+    /// `DD`: end of program.
+    #[default]
+    DD,
+    /// `D`: pause.
+    D,
+    /// `E`: end.
+    E,
+    /// No stop word.
+    None,
+}
+
+impl StopWord {
+    /// The word as it is written.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::DD => "DD",
+            Self::D => "D",
+            Self::E => "E",
+            Self::None => "",
+        }
     }
 }
 
