@@ -9,13 +9,20 @@
 //! What a word means is decided by the control: a [`Dialect`] is data, a file of its own. Macro programs are not read
 //! here; they are expanded first.
 
+mod arcs;
 mod blocks;
 mod boundaries;
 pub mod dialect;
+mod interpret;
+mod machine;
 pub mod modal;
 pub mod numbers;
+mod registers;
+mod subprograms;
 pub mod words;
 
 pub use blocks::{Block, Blocks};
 pub use boundaries::{Boundaries, Boundary};
 pub use dialect::Dialect;
+pub use interpret::{CALLS_MAX, Motions};
+pub use subprograms::{Library, SUBPROGRAM_BYTES_MAX};

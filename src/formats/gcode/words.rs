@@ -183,16 +183,13 @@ fn letters(line: &[u8], at: usize, after: Option<u8>, next: usize, words: &mut V
     }
     let count = line[at..].iter().take_while(|b| b.is_ascii_alphabetic()).count();
     if count == 1 {
-        words.push(Word {
-            letter: line[at] & 0xDF,
-            kind: Kind::Word,
-            ..Word::piece(Kind::Word, at, at + 1)
-        });
+        words.push(Word { letter: line[at] & 0xDF, kind: Kind::Word, ..Word::piece(Kind::Word, at, at + 1) });
         return at + 1;
     }
     let end = at + count;
     let name = &line[at..end];
-    let kind = if MACRO_WORDS.iter().any(|w| name.eq_ignore_ascii_case(w)) { Kind::Macro } else { Kind::Unknown };
+    let kind =
+        if MACRO_WORDS.iter().any(|w| name.eq_ignore_ascii_case(w)) { Kind::Macro } else { Kind::Unknown };
     // The number behind belongs to it.
     let end = end + line[end..].iter().take_while(|b| matches!(b, b'0'..=b'9' | b'.' | b'-' | b'+')).count();
     words.push(Word::piece(kind, at, end));
@@ -302,7 +299,10 @@ mod tests {
     fn pieces(line: &str) -> Vec<(Kind, String)> {
         let mut words = Vec::new();
         cut(line.as_bytes(), &mut words).unwrap();
-        words.iter().map(|w| (w.kind, String::from_utf8_lossy(w.text(line.as_bytes())).into_owned())).collect()
+        words
+            .iter()
+            .map(|w| (w.kind, String::from_utf8_lossy(w.text(line.as_bytes())).into_owned()))
+            .collect()
     }
 
     fn numbers(line: &str) -> Vec<(char, Option<(i64, u8, bool)>)> {

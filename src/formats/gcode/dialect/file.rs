@@ -1,8 +1,6 @@
 //! Reading a dialect file.
 
-use super::{
-    ArcCentre, CODES, Code, Dialect, I, J, K, L, Label, R, Role, U, V, Written, X, Y,
-};
+use super::{ArcCentre, CODES, Code, Dialect, I, J, K, L, Label, R, Role, U, V, Written, X, Y};
 use crate::formats::gcode::modal::Mode;
 use crate::formats::gcode::numbers::Unit;
 use crate::keys::{Document, KeyError, Section};
@@ -16,8 +14,8 @@ impl Dialect {
     /// When it is not TOML, a key is missing or unknown, or a value is none of those there are.
     pub fn parse(text: &str) -> Result<Self, KeyError> {
         let document = Document::parse(text)?;
-        let [about, numbers, path, offset, program, words, written] = document
-            .sections(["dialect", "numbers", "path", "offset", "program", "words", "written"])?;
+        let [about, numbers, path, offset, program, words, written] =
+            document.sections(["dialect", "numbers", "path", "offset", "program", "words", "written"])?;
         let mut dialect = Self {
             name: needed(&about, "name", about.text("name")?)?.to_owned(),
             unit_at_start: word(&numbers, "unit_at_start", &UNITS)?,
@@ -259,11 +257,19 @@ const CENTRES: [(&str, ArcCentre); 3] = [
 
 fn needed<T>(section: &Section<'_>, key: &'static str, value: Option<T>) -> Result<T, KeyError> {
     value.ok_or_else(|| {
-        section.error(key, format!("`{key}` is missing"), Some("a dialect file says everything; see generic.toml"))
+        section.error(
+            key,
+            format!("`{key}` is missing"),
+            Some("a dialect file says everything; see generic.toml"),
+        )
     })
 }
 
-fn word<T: Copy>(section: &Section<'_>, key: &'static str, words: &[(&'static str, T)]) -> Result<T, KeyError> {
+fn word<T: Copy>(
+    section: &Section<'_>,
+    key: &'static str,
+    words: &[(&'static str, T)],
+) -> Result<T, KeyError> {
     needed(section, key, section.word(key, words)?)
 }
 
@@ -282,10 +288,7 @@ fn letter(section: &Section<'_>, key: &'static str) -> Result<Option<u8>, KeyErr
 }
 
 /// The words of a text, each with its letter and code; a letter 0 for a word of several letters.
-fn list<'a>(
-    section: &Section<'a>,
-    key: &'static str,
-) -> Result<Vec<(&'a str, u8, Option<usize>)>, KeyError> {
+fn list<'a>(section: &Section<'a>, key: &'static str) -> Result<Vec<(&'a str, u8, Option<usize>)>, KeyError> {
     let text = needed(section, key, section.text(key)?)?;
     Ok(text
         .split_ascii_whitespace()
@@ -329,11 +332,17 @@ mod tests {
             Dialect::parse(&generic.replacen(from, to, 1)).unwrap_err().message
         };
         assert_eq!(refused("radius = true", ""), "`radius` is missing");
-        assert_eq!(refused("radius = true", "radius = true\nradios = true"), "unknown key `radios` in [path]");
+        assert_eq!(
+            refused("radius = true", "radius = true\nradios = true"),
+            "unknown key `radios` in [path]"
+        );
         assert!(refused("without_point = \"error\"", "without_point = \"inch\"").contains("is not one of"));
         assert_eq!(refused("wire = \"", "wire = \"G01 "), "`G01` has a meaning already");
         assert_eq!(refused("wire = \"", "wire = \"G "), "`G` needs a number");
-        assert_eq!(refused("register = \"D\"", "register = \"X\""), "`register` must be a free capital letter or \"none\"");
+        assert_eq!(
+            refused("register = \"D\"", "register = \"X\""),
+            "`register` must be a free capital letter or \"none\""
+        );
         assert!(refused("arguments = \"", "arguments = \"M15 ").contains("is not like"));
     }
 }
