@@ -20,9 +20,11 @@ pub mod numbers;
 mod registers;
 mod subprograms;
 pub mod words;
+mod write;
 
 pub use blocks::{Block, Blocks};
 pub use boundaries::{Boundaries, Boundary};
 pub use dialect::Dialect;
 pub use interpret::{CALLS_MAX, Motions};
 pub use subprograms::{Library, SUBPROGRAM_BYTES_MAX};
+pub use write::{Layout, Writer};

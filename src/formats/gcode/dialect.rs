@@ -270,6 +270,12 @@ impl Dialect {
         }
     }
 
+    /// Whether G50 to G52 switch a taper.
+    #[must_use]
+    pub fn has_taper(&self) -> bool {
+        matches!(self.g_codes[51], Code::Taper(_))
+    }
+
     /// How far the radii of an arc may disagree in a unit, nanometres: 2 µm and the least increment.
     #[must_use]
     pub fn arc_tolerance(&self, unit: Unit) -> i64 {

@@ -173,7 +173,12 @@ impl<R: Read> Motions<R> {
             self.calls.pop();
             return Ok(true);
         };
+        let opens = line.byte == body.spot.byte;
         let (counted, flow) = self.machine.run(line, call.block, &mut self.ready)?;
+        if opens && matches!(self.ready.front(), Some(Motion { act: Act::Header(_), .. })) {
+            // The label was for the call; the blocks now stand in its place.
+            self.ready.pop_front();
+        }
         call.block += u64::from(counted);
         match flow {
             Flow::On => {}
