@@ -59,8 +59,12 @@ impl<'d, R: Read> Blocks<'d, R> {
     /// # Errors
     ///
     /// When the source fails, is UTF-16, or has a line that is too long or with a remark that is not closed.
+    #[inline]
     pub fn next_block(&mut self) -> Result<Option<Block<'_>>, ReadError> {
-        let Some(line) = self.lines.next_line()? else { return Ok(None) };
+        if !self.lines.advance()? {
+            return Ok(None);
+        }
+        let line = self.lines.line();
         words::cut(line.bytes, &mut self.words).map_err(|e| unclosed(&line, e))?;
         let counts = counts(&self.words, self.dialect);
         self.block += u64::from(counts);

@@ -42,30 +42,35 @@ impl<'d, R: Read> Boundaries<'d, R> {
     /// # Errors
     ///
     /// When the source fails, is UTF-16, or has a line that is too long or with a remark that is not closed.
+    #[inline]
     pub fn next_boundary(&mut self) -> Result<Option<Boundary>, ReadError> {
-        while let Some(line) = self.lines.next_line()? {
+        while self.lines.advance()? {
+            let line = self.lines.line();
             let label = match line.bytes.first() {
-                None => continue,
-                Some(b'N') => match label(&line.bytes[1..]) {
-                    Some(label) => Some(label),
-                    None => {
-                        words::cut(line.bytes, &mut self.words).map_err(|e| unclosed(&line, e))?;
-                        label_of(&self.words)
-                    }
+                Some(b'N') => label(&line.bytes[1..]),
+                Some(first) if first.is_ascii_uppercase() && !self.dialect.names_program(*first) => NONE,
+                _ => ASK,
+            };
+            let label = match label {
+                ASK => match self.look_closely()? {
+                    Some(label) => label,
+                    None => continue,
                 },
-                Some(first) if first.is_ascii_uppercase() && !self.dialect.names_program(*first) => None,
-                Some(_) => {
-                    words::cut(line.bytes, &mut self.words).map_err(|e| unclosed(&line, e))?;
-                    if !counts(&self.words, self.dialect) {
-                        continue;
-                    }
-                    label_of(&self.words)
-                }
+                NONE => None,
+                label => u32::try_from(label).ok(),
             };
             self.block += 1;
-            return Ok(Some(Boundary { block: self.block, label, spot: line.spot(0) }));
+            return Ok(Some(Boundary { block: self.block, label, spot: self.lines.line().spot(0) }));
         }
         Ok(None)
+    }
+
+    /// Whether the line is a block, and its number, by all its words.
+    #[cold]
+    fn look_closely(&mut self) -> Result<Option<Option<u32>>, ReadError> {
+        let line = self.lines.line();
+        words::cut(line.bytes, &mut self.words).map_err(|e| unclosed(&line, e))?;
+        Ok(counts(&self.words, self.dialect).then(|| label_of(&self.words)))
     }
 }
 
@@ -77,18 +82,26 @@ impl<R: Read> Iterator for Boundaries<'_, R> {
     }
 }
 
+/// A block without a number, or one that must be looked at word by word; beyond every number.
+const NONE: u64 = u64::MAX;
+/// See [`NONE`].
+const ASK: u64 = u64::MAX - 1;
+
 /// The number at the start of a text, when it is a plain one.
-fn label(text: &[u8]) -> Option<u32> {
-    let mut label = 0u32;
+#[inline]
+fn label(text: &[u8]) -> u64 {
+    let mut label = 0u64;
     for (n, byte) in text.iter().enumerate() {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
-            let plain = n > 0 && n < 10 && *byte != b'.';
-            return plain.then_some(label);
+            return if n > 0 && *byte != b'.' { label } else { ASK };
         }
-        label = label.wrapping_mul(10).wrapping_add(u32::from(digit));
+        if n > 8 {
+            return ASK;
+        }
+        label = label * 10 + u64::from(digit);
     }
-    (0 < text.len() && text.len() < 10).then_some(label)
+    if text.is_empty() { ASK } else { label }
 }
 
 /// Whether a line with these words is a block.

@@ -225,13 +225,13 @@ impl Dialect {
     #[inline]
     #[must_use]
     pub fn g_code(&self, word: &Word) -> Code {
-        word.whole().and_then(|code| self.g_codes.get(code as usize)).copied().unwrap_or(Code::Unknown)
+        self.g_codes.get(word.code()).copied().unwrap_or(Code::Unknown)
     }
 
     /// What an M word does.
     #[must_use]
     pub fn m_code(&self, word: &Word) -> Code {
-        word.whole().and_then(|code| self.m_codes.get(code as usize)).copied().unwrap_or(Code::Unknown)
+        self.m_codes.get(word.code()).copied().unwrap_or(Code::Unknown)
     }
 
     /// What a letter other than G and M is.

@@ -52,12 +52,20 @@ impl Number {
     /// The number in nanometres, when 1 is `per` nanometres; none beyond [`LENGTH_MAX`].
     #[must_use]
     pub fn nanometres(self, per: i64) -> Option<i64> {
-        let product = i128::from(self.mantissa) * i128::from(per);
-        let divisor = i128::from(*POWERS.get(usize::from(self.decimals))?);
+        let divisor = *POWERS.get(usize::from(self.decimals))?;
         // Halves away from zero: half the divisor is added on the side of the sign.
-        let half = if product < 0 { -divisor / 2 } else { divisor / 2 };
-        let value = i64::try_from((product + half) / divisor).ok()?;
-        (value.abs() <= LENGTH_MAX).then_some(value)
+        let value = match self.mantissa.checked_mul(per) {
+            Some(product) if product.unsigned_abs() < u64::MAX / 4 && divisor < i64::MAX / 2 => {
+                (product + if product < 0 { -divisor / 2 } else { divisor / 2 }) / divisor
+            }
+            _ => {
+                let product = i128::from(self.mantissa) * i128::from(per);
+                let divisor = i128::from(divisor);
+                let half = if product < 0 { -divisor / 2 } else { divisor / 2 };
+                i64::try_from((product + half) / divisor).ok()?
+            }
+        };
+        (-LENGTH_MAX..=LENGTH_MAX).contains(&value).then_some(value)
     }
 
     /// The number as it is, for what is no length.

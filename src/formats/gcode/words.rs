@@ -80,6 +80,13 @@ impl Word {
         self.number()?.whole()
     }
 
+    /// Its number as an index into a table of codes; beyond any table where it is not a whole one.
+    #[inline]
+    pub(super) fn code(&self) -> usize {
+        let is_whole = self.form & (DIGITS | TOO_LONG) == DIGITS && self.decimals == 0;
+        if is_whole { usize::try_from(self.mantissa).unwrap_or(usize::MAX) } else { usize::MAX }
+    }
+
     /// Its text.
     #[must_use]
     pub fn text<'a>(&self, line: &'a [u8]) -> &'a [u8] {
