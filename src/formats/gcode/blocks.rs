@@ -17,6 +17,7 @@ pub struct Blocks<'d, R> {
     words: Vec<Word>,
     modal: Modal,
     block: u64,
+    counts: bool,
 }
 
 /// A line of a program and what it says.
@@ -27,7 +28,7 @@ pub struct Block<'a> {
     /// Its words, and what stands between them.
     pub words: &'a [Word],
     /// What is in force once it is executed.
-    pub modal: Modal,
+    pub modal: &'a Modal,
     /// The number of the block, from 1; of a line that is none, that of the last one.
     pub number: u64,
     /// Whether the line counts as a block.
@@ -51,6 +52,7 @@ impl<'d, R: Read> Blocks<'d, R> {
             words: Vec::new(),
             modal: Modal::at_start(dialect),
             block: 0,
+            counts: false,
         }
     }
 
@@ -61,14 +63,31 @@ impl<'d, R: Read> Blocks<'d, R> {
     /// When the source fails, is UTF-16, or has a line that is too long or with a remark that is not closed.
     #[inline]
     pub fn next_block(&mut self) -> Result<Option<Block<'_>>, ReadError> {
+        Ok(if self.advance()? { Some(self.block()) } else { None })
+    }
+
+    /// The line that was last read.
+    #[inline]
+    fn block(&self) -> Block<'_> {
+        Block {
+            line: self.lines.line(),
+            words: &self.words,
+            modal: &self.modal,
+            number: self.block,
+            counts: self.counts,
+        }
+    }
+
+    /// Reads the next line; false at the end of the source.
+    fn advance(&mut self) -> Result<bool, ReadError> {
         if !self.lines.advance()? {
-            return Ok(None);
+            return Ok(false);
         }
         let line = self.lines.line();
         words::cut(line.bytes, &mut self.words).map_err(|e| unclosed(&line, e))?;
-        let counts = counts(&self.words, self.dialect);
-        self.block += u64::from(counts);
+        self.counts = counts(&self.words, self.dialect);
+        self.block += u64::from(self.counts);
         self.modal.take_in(&self.words, self.dialect);
-        Ok(Some(Block { line, words: &self.words, modal: self.modal, number: self.block, counts }))
+        Ok(true)
     }
 }
