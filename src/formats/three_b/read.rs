@@ -599,6 +599,8 @@ mod tests {
         let remark = format!(";{}", "x".repeat(LINE_BYTES_MAX - 1));
         assert_eq!(texts(&remark), [""; 0]);
         assert!(refusal(&format!("{remark}x")).0.contains("longer"));
+        let gap = " ".repeat(LINE_BYTES_MAX);
+        assert!(refusal(&format!("B7B0B7GXL1{gap}B7B0B7GXL1")).0.contains("longer"));
         let blocks = "B9900B0B9900GXL1".repeat(4000);
         let blanks = " ".repeat(LINE_BYTES_MAX - 1 - blocks.len());
         let items = read(&format!("{blocks}{blanks}DD")).unwrap();
