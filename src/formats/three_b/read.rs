@@ -283,6 +283,7 @@ impl<R: io::Read> Reader<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::three_b::{Quadrant, Sense};
     use crate::units::Position;
 
     fn read(text: &str) -> Result<Vec<(Item, String)>, ReadError> {
