@@ -11,6 +11,7 @@ macro_rules! say {
     }};
 }
 
+mod check;
 mod connection;
 #[cfg(feature = "demo")]
 mod demo;
@@ -19,6 +20,7 @@ mod feeding;
 mod generate;
 mod jobs;
 mod machines;
+mod motions;
 mod question;
 mod resume;
 mod screen;
@@ -46,6 +48,7 @@ enum Command {
     #[cfg(feature = "demo")]
     Demo(demo::Options),
     Generate(generate::Options),
+    Check(check::Options),
     Send(send::Options),
     Resume(resume::Options),
     Jobs(jobs::Options),
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "demo")]
         Command::Demo(options) => demo::run(&options),
         Command::Generate(options) => generate::run(options),
+        Command::Check(options) => check::run(&options),
         Command::Send(options) => send::run(options),
         Command::Resume(options) => resume::run(options),
         Command::Jobs(options) => jobs::run(&options),

@@ -95,7 +95,7 @@ pub(super) fn part_file(path: &str) -> Result<(PartFile, blake3::Hash), Failure>
     Ok((file, blake3::hash(text.as_bytes())))
 }
 
-fn unreadable(path: &str, error: &io::Error) -> Failure {
+pub(super) fn unreadable(path: &str, error: &io::Error) -> Failure {
     let help = match error.kind() {
         io::ErrorKind::NotFound => "check the name; a shape is generated with `dripfeed generate`",
         io::ErrorKind::InvalidData => "the file is not UTF-8 text",
@@ -104,33 +104,35 @@ fn unreadable(path: &str, error: &io::Error) -> Failure {
     Failure::new(Exit::Program, format!("cannot read {path}: {error}")).help(help)
 }
 
+/// What a word on the command line stands for, by `--from`, its name, or its content.
+pub(super) fn kind(word: &str, from: Option<Kind>) -> Result<Kind, Failure> {
+    if word == "-" {
+        return from.ok_or_else(|| {
+            Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
+                .help("for example `--from 3b`")
+        });
+    }
+    let metadata = std::fs::metadata(word).map_err(|error| unreadable(word, &error))?;
+    if metadata.is_dir() {
+        return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program")));
+    }
+    from.or_else(|| kind_of(word, metadata.is_file())).ok_or_else(|| {
+        Failure::new(Exit::Usage, format!("what {word} is cannot be told from its name"))
+            .help("name a .3b program or a .toml part file, or say --from 3b or --from part")
+    })
+}
+
 impl Source {
     /// Opens and checks what a word on the command line stands for.
     pub(super) fn open(word: &str, from: Option<Kind>) -> Result<Self, Failure> {
+        let kind = kind(word, from)?;
         if word == "-" {
-            return match from {
-                Some(Kind::ThreeB) => Ok(Self::stream(word)),
-                Some(Kind::Part) => Self::part("-", Path::new("-")),
-                None => {
-                    Err(Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
-                        .help("for example `--from 3b`"))
-                }
+            return match kind {
+                Kind::ThreeB => Ok(Self::stream(word)),
+                Kind::Part => Self::part("-", Path::new("-")),
             };
         }
         let metadata = std::fs::metadata(word).map_err(|error| unreadable(word, &error))?;
-        if metadata.is_dir() {
-            return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program")));
-        }
-        let kind = match from.or_else(|| kind_of(word, metadata.is_file())) {
-            Some(kind) => kind,
-            None => {
-                return Err(Failure::new(
-                    Exit::Usage,
-                    format!("what {word} is cannot be told from its name"),
-                )
-                .help("name a .3b program or a .toml part file, or say --from 3b or --from part"));
-            }
-        };
         let path = std::path::absolute(word).map_err(|error| unreadable(word, &error))?;
         match kind {
             Kind::Part => Self::part(word, &path),

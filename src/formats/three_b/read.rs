@@ -11,7 +11,7 @@ use super::{Axis, Block, COUNT_MAX, Motion, Quadrant};
 use crate::formats::ReadError;
 use crate::geometry::Sense;
 use crate::interpolator::{COORDINATE_MAX, Model};
-use crate::place::Place;
+use crate::place::{Place, Spot};
 use crate::units::Micrometres;
 
 /// The longest line that is held; a longer one is an error, not a buffer, unless it is of blocks that run together.
@@ -43,6 +43,7 @@ pub struct Reader<R> {
     line_byte: u64,
     at: usize,
     text: Vec<u8>,
+    begun: Spot,
     ended_by: Option<&'static str>,
 }
 
@@ -58,6 +59,7 @@ impl<R: BufRead> Reader<R> {
             line_byte: 0,
             at: 0,
             text: Vec::new(),
+            begun: Spot::default(),
             ended_by: None,
         }
     }
@@ -66,6 +68,12 @@ impl<R: BufRead> Reader<R> {
     #[must_use]
     pub fn text(&self) -> &[u8] {
         &self.text
+    }
+
+    /// Where what was just read begins.
+    #[must_use]
+    pub fn spot(&self) -> Spot {
+        self.begun
     }
 
     /// The next block or stop word; none at the end of the source.
@@ -80,6 +88,11 @@ impl<R: BufRead> Reader<R> {
                     continue;
                 }
                 return Ok(None);
+            };
+            self.begun = Spot {
+                byte: self.line_byte + self.at as u64,
+                line: self.line_number,
+                column: self.line_column + self.at as u64 + 1,
             };
             match byte {
                 b' ' | b'\t' | b'\r' | b'\n' | 0 | 0x1A => self.at += 1,
