@@ -163,7 +163,7 @@ impl Contours {
         self.held.push(held);
         let Some(from) = self.node_at(end, along) else { return };
         let (before, ring) = self.held.split_at(from);
-        if encloses_nothing(ring, along - ring[0].along) {
+        if encloses_nothing(ring) {
             tell(Run::Retrace(ring));
         } else {
             self.rings += 1;
@@ -231,11 +231,15 @@ impl Contours {
     }
 }
 
-/// Whether a ring of a length goes back the way it came.
-fn encloses_nothing(ring: &[Held], length: f64) -> bool {
-    let origin = -ring[0].element.start().coords;
-    let doubled: f64 = ring.iter().map(|held| held.element.placed(0.0, 1.0, origin).doubled_area()).sum();
-    doubled.abs() <= length * CLOSED_MM
+/// Whether a ring goes back the way it came, block by block.
+fn encloses_nothing(ring: &[Held]) -> bool {
+    let (there, back) = ring.split_at(ring.len() / 2);
+    let near = |a: Point, b: Point| (a - b).norm() <= CLOSED_MM;
+    ring.len().is_multiple_of(2)
+        && there.iter().zip(back.iter().rev()).all(|(there, back)| {
+            let (there, back) = (&there.element, &back.element);
+            near(there.start(), back.end()) && near(there.at(0.5), back.at(0.5))
+        })
 }
 
 /// The cell of a point; somewhat larger than what counts as the same node.

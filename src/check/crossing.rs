@@ -174,21 +174,35 @@ fn side([back, on]: [Vector; 2], way: Vector) -> Option<bool> {
 
 /// Whether two elements that cross at a small angle lie well apart on either side of the crossing.
 fn comes_apart(first: &Element, second: &Element) -> bool {
-    let offset = |point: Point| {
-        let nearest = first.nearest(point);
-        let heading = match *first {
-            Element::Line { .. } => first.heading_at_start(),
-            Element::Arc { end, centre, sense, .. } => {
-                Element::Arc { start: nearest, end, centre, sense }.heading_at_start()
-            }
-        };
-        let way = point - nearest;
-        let side = heading.x * way.y - heading.y * way.x;
-        // Beyond an end of the first there is no side.
-        if way.norm() > 0.0 && side.abs() < 0.9 * way.norm() { 0.0 } else { side }
+    let apart = |end: Point| {
+        let nearest = first.nearest(end);
+        offset(first, nearest, end).or_else(|| {
+            // The second reaches beyond the first: they are compared at the first one's end.
+            let nearer = |p: Point| (p - end).norm();
+            let (start, stop) = (first.start(), first.end());
+            let last = if nearer(start) < nearer(stop) { start } else { stop };
+            offset(first, last, second.nearest(last))
+        })
     };
-    let (before, after) = (offset(second.start()), offset(second.end()));
-    before * after < 0.0 && before.abs().min(after.abs()) > DEPTH_LEAST
+    match (apart(second.start()), apart(second.end())) {
+        (Some(before), Some(after)) => {
+            before * after < 0.0 && before.abs().min(after.abs()) > DEPTH_LEAST
+        }
+        _ => false,
+    }
+}
+
+/// How far a point lies to the left of an element, abreast of a point of it, mm; none when it is not abreast.
+fn offset(element: &Element, on: Point, point: Point) -> Option<f64> {
+    let heading = match *element {
+        Element::Line { .. } => element.heading_at_start(),
+        Element::Arc { end, centre, sense, .. } => {
+            Element::Arc { start: on, end, centre, sense }.heading_at_start()
+        }
+    };
+    let way = point - on;
+    let left = heading.x * way.y - heading.y * way.x;
+    (left.abs() >= 0.9 * way.norm()).then_some(left)
 }
 
 /// Searches runs, and watches the nodes where rings hang on.
