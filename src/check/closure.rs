@@ -3,7 +3,7 @@
 //! A cut that comes back within 3 µm of a node has closed ([`super::contours`]). One that ends a little way off a node it
 //! passed long before was meant to close; one that ends far from all of them is open, which a parting cut may be.
 
-use super::contours::{Held, Run};
+use super::contours::{CLOSED_MM, Held, Run};
 use super::Finding;
 
 /// A gap beyond this, mm, is no gap but an open cut.
@@ -53,6 +53,8 @@ fn rest(held: &[Held], fresh: usize, rings: u64, tell: &mut impl FnMut(Finding))
         .filter(|(gap, node)| *gap <= GAP_MM && along - node.along() >= gap * WAY_PER_GAP)
         .min_by(|a, b| a.0.total_cmp(&b.0));
     match nearest {
+        // A contour too small to be told from its nodes.
+        Some((gap, _)) if gap <= CLOSED_MM => {}
         Some((gap, node)) => {
             let message = format!(
                 "the contour does not close: it ends {:.1} µm from where block {} began",

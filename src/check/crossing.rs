@@ -208,27 +208,40 @@ fn offset(element: &Element, on: Point, point: Point) -> Option<f64> {
 /// Searches runs, and watches the nodes where rings hang on.
 #[derive(Debug, Default)]
 pub(super) struct Crossing {
-    /// A ring has closed on a path that came in: how the path came, and the ring's two ends.
-    hung: Option<Hung>,
+    /// The rings that hang on the chain, the last one perhaps not yet left.
+    hung: Vec<Hung>,
     /// The ring before.
     last: Option<(Point, [Vector; 2])>,
 }
 
+/// The most hanging rings that are remembered.
+const HUNG_MAX: usize = 64;
+
+/// A ring that has closed on a path that came in, seen from their common node.
 #[derive(Clone, Copy, Debug)]
 struct Hung {
     at: Point,
     came: Vector,
+    /// Back into the ring's last element, and on into its first.
     ring: [Vector; 2],
+    /// How the path went on, with the block.
+    went: Option<(Vector, u64, Spot)>,
 }
 
 impl Crossing {
     /// Looks at the first cut after a ring: it must leave the ring on the side it came from.
     pub(super) fn go_on(&mut self, motion: &Motion, tell: &mut impl FnMut(Finding)) {
         let Act::Move { travel, element, .. } = &motion.act else { return };
-        let Some(hung) = self.hung.take() else { return };
-        let goes_on = *travel == Travel::Cut && (element.start() - hung.at).norm() <= CLOSED_MM;
-        if goes_on && interleave(hung.ring, [hung.came, element.heading_at_start()]) {
+        let Some(hung) = self.hung.last_mut().filter(|hung| hung.went.is_none()) else { return };
+        if *travel == Travel::Rapid || (element.start() - hung.at).norm() > CLOSED_MM {
+            self.hung.pop();
+            return;
+        }
+        let went = element.heading_at_start();
+        hung.went = Some((went, motion.block, motion.spot));
+        if interleave(hung.ring, [hung.came, went]) {
             tell(crossing(hung.at, motion.block, motion.spot, None));
+            self.hung.pop();
         }
     }
 
@@ -237,6 +250,7 @@ impl Crossing {
             Run::Ring { lead, ring, .. } => Stretch { lead, ring, is_closed: true },
             Run::Rest { held, fresh, .. } => {
                 self.last = None;
+                self.hung.clear();
                 Stretch { lead: &[], ring: &held[held.len() - fresh..], is_closed: false }
             }
             Run::Retrace(_) | Run::TooLong(_) => return,
@@ -261,18 +275,37 @@ impl Crossing {
             ),
         }
         if stretch.is_closed {
-            let at = first.element.start();
-            let ring = [-last.element.heading_at_end(), first.element.heading_at_start()];
-            if let Some((before, ways)) = self.last
-                && stretch.lead.is_empty()
-                && (before - at).norm() <= CLOSED_MM
-                && interleave(ways, ring)
-            {
-                tell(crossing(at, first.block, first.spot, None));
+            self.close(&stretch, first, last, tell);
+        }
+    }
+
+    /// Looks at the nodes that a ring shares with the rings before it.
+    fn close(&mut self, stretch: &Stretch<'_>, first: &Held, last: &Held, tell: &mut impl FnMut(Finding)) {
+        let at = first.element.start();
+        let ring = [-last.element.heading_at_end(), first.element.heading_at_start()];
+        // A ring that hung on this one: its two passes through the node must not change sides.
+        self.hung.retain(|hung| {
+            let Some((went, block, spot)) = hung.went else { return true };
+            let is_on_ring =
+                stretch.ring[1..].iter().any(|held| (held.element.start() - hung.at).norm() <= CLOSED_MM);
+            if is_on_ring && interleave([hung.came, hung.ring[1]], [hung.ring[0], went]) {
+                tell(crossing(hung.at, block, spot, None));
             }
-            self.last = Some((at, ring));
-            let came = stretch.lead.last().map(|lead| -lead.element.heading_at_end());
-            self.hung = came.map(|came| Hung { at, came, ring });
+            !is_on_ring
+        });
+        // A ring right behind another, from the same node.
+        if let Some((before, ways)) = self.last
+            && stretch.lead.is_empty()
+            && (before - at).norm() <= CLOSED_MM
+            && interleave(ways, ring)
+        {
+            tell(crossing(at, first.block, first.spot, None));
+        }
+        self.last = Some((at, ring));
+        if let Some(lead) = stretch.lead.last()
+            && self.hung.len() < HUNG_MAX
+        {
+            self.hung.push(Hung { at, came: -lead.element.heading_at_end(), ring, went: None });
         }
     }
 }
