@@ -21,6 +21,7 @@ mod generate;
 mod jobs;
 mod machines;
 mod motions;
+mod plot;
 mod question;
 mod resume;
 mod screen;
@@ -49,6 +50,7 @@ enum Command {
     Demo(demo::Options),
     Generate(generate::Options),
     Check(check::Options),
+    Plot(plot::Options),
     Send(send::Options),
     Resume(resume::Options),
     Jobs(jobs::Options),
@@ -73,6 +75,7 @@ pub fn main() -> ExitCode {
         Command::Demo(options) => demo::run(&options),
         Command::Generate(options) => generate::run(options),
         Command::Check(options) => check::run(&options),
+        Command::Plot(options) => plot::run(&options),
         Command::Send(options) => send::run(options),
         Command::Resume(options) => resume::run(options),
         Command::Jobs(options) => jobs::run(&options),

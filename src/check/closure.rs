@@ -24,18 +24,21 @@ impl Closure {
         match run {
             Run::Ring { .. } | Run::Retrace(_) => {}
             Run::Rest { held, fresh, rings } => rest(held, *fresh, *rings, tell),
-            Run::TooLong(held) => tell(
-                Finding::warning(
-                    "not-checked",
-                    held.spot,
-                    held.block,
-                    format!(
-                        "more than {} cuts without a closed contour: closure, crossing and lead-in are not checked",
-                        super::contours::HELD_MAX
-                    ),
-                )
-                .help("split the program at a pause, or see that its contours close"),
-            ),
+            Run::TooLong(held) => {
+                let Some(first) = held.first() else { return };
+                tell(
+                    Finding::warning(
+                        "not-checked",
+                        first.spot,
+                        first.block,
+                        format!(
+                            "more than {} cuts without a closed contour: closure, crossing and lead-in are not checked",
+                            held.len()
+                        ),
+                    )
+                    .help("split the program at a pause, or see that its contours close"),
+                );
+            }
         }
     }
 }

@@ -74,8 +74,8 @@ pub enum Run<'a> {
         /// How many rings the chain had.
         rings: u64,
     },
-    /// The chain has a stretch of more than [`HELD_MAX`] cuts without a ring: it is not held any longer.
-    TooLong(&'a Held),
+    /// The chain has a stretch of so many cuts without a ring that it is not held any longer; these have been.
+    TooLong(&'a [Held]),
 }
 
 /// The most cuts that are held, some 200 MB with their nodes.
@@ -88,9 +88,10 @@ pub const CLOSED_MM: f64 = 0.003;
 const RING_MM: f64 = 0.05;
 
 /// Finds the rings of a program.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Contours {
     held: Vec<Held>,
+    held_max: usize,
     /// The first cut that has not been handed over.
     fresh: usize,
     rings: u64,
@@ -103,7 +104,35 @@ pub struct Contours {
     drift: Drift,
 }
 
+impl Default for Contours {
+    fn default() -> Self {
+        Self::holding(HELD_MAX)
+    }
+}
+
 impl Contours {
+    /// Finds rings of up to so many cuts, at most [`HELD_MAX`].
+    #[must_use]
+    pub fn holding(most: usize) -> Self {
+        Self {
+            held: Vec::new(),
+            held_max: most.min(HELD_MAX),
+            fresh: 0,
+            rings: 0,
+            is_given_up: false,
+            cells: HashMap::default(),
+            before: Vec::new(),
+            end: None,
+            drift: Drift::default(),
+        }
+    }
+
+    /// Whether the chain is so long that it is passed over to its end.
+    #[must_use]
+    pub fn is_given_up(&self) -> bool {
+        self.is_given_up
+    }
+
     /// Takes the next motion; `drift` is where the models stand when it is done.
     pub fn see(&mut self, motion: &Motion, state: State, drift: Drift, tell: &mut impl FnMut(Run<'_>)) {
         match &motion.act {
@@ -151,8 +180,8 @@ impl Contours {
         if self.is_given_up {
             return;
         }
-        if self.held.len() == HELD_MAX {
-            tell(Run::TooLong(&held));
+        if self.held.len() == self.held_max {
+            tell(Run::TooLong(&self.held));
             self.clear();
             self.is_given_up = true;
             self.end = Some(end);
