@@ -125,13 +125,19 @@ pub fn offset(path: &Path, left: f64, corners: Corners) -> Result<Offset, Imposs
         return Ok(Offset { outlines, unreached: Vec::new(), filled_corners: 0 });
     }
     let source = Source::new(path, left);
-    check_meetings(&source)?;
     let options = PlineOffsetOptions { aabb_index: Some(&source.index), ..PlineOffsetOptions::new() };
     let found: Vec<Polyline> = source.polyline.parallel_offset_opt(left, &options);
     let mut outlines: Vec<_> =
         found.iter().filter_map(|outline| attribution::outline(&source, outline)).collect();
     outlines.sort_by_key(|outline| outline.origins.first().map(|origin| origin.order()));
-    let (unreached, filled_corners) = unreached::find(path, &source, &outlines);
+    // An outline that keeps its distance and runs beside every element in turn, all along it, is the offset: where one
+    // part of the contour went through another, the wire beside it would have been cut off.
+    let whole = unreached::corners_of_whole(path, &source, &outlines);
+    if whole != Some(0) {
+        check_meetings(&source)?;
+    }
+    let (unreached, filled_corners) =
+        whole.map_or_else(|| unreached::find(path, &source, &outlines), |filled| (Vec::new(), filled));
     if let Corners::Sharp { limit } = corners {
         outlines = outlines.into_iter().map(|outline| mitre::sharpened(outline, &source, limit)).collect();
     }
@@ -193,21 +199,22 @@ fn check_numbers(path: &Path, left: f64, corners: Corners) -> Result<(), Impossi
     if matches!(corners, Corners::Sharp { limit } if !limit.is_finite()) {
         return Err(Impossible::NotFinite("the limit of sharp corners"));
     }
-    let numbers = path.elements().iter().flat_map(|element| {
-        let centre = match *element {
-            Element::Line { start, .. } => start,
-            Element::Arc { centre, .. } => centre,
-        };
-        [element.start(), element.end(), centre]
-    });
-    let mut largest = left.abs();
-    for point in numbers {
-        if !(point.x.is_finite() && point.y.is_finite()) {
-            return Err(Impossible::NotFinite("a coordinate of the contour"));
-        }
-        largest = largest.max(point.x.abs()).max(point.y.abs());
+    let centre = |element: &Element| match *element {
+        Element::Line { start, .. } => start,
+        Element::Arc { centre, .. } => centre,
+    };
+    let numbers = |element: &Element| {
+        let (start, end, centre) = (element.start(), element.end(), centre(element));
+        [start.x, start.y, end.x, end.y, centre.x, centre.y]
+    };
+    let fits = |number: f64| number.abs() <= FARTHEST;
+    if fits(left) && path.elements().iter().all(|element| numbers(element).into_iter().all(fits)) {
+        return Ok(());
     }
-    if largest > FARTHEST { Err(Impossible::TooFar) } else { Ok(()) }
+    if path.elements().iter().any(|element| !numbers(element).into_iter().all(f64::is_finite)) {
+        return Err(Impossible::NotFinite("a coordinate of the contour"));
+    }
+    Err(Impossible::TooFar)
 }
 
 fn check_meetings(source: &Source) -> Result<(), Impossible> {

@@ -64,21 +64,32 @@ pub(crate) fn samples(element: &Element, count: usize) -> Vec<(Point, Point)> {
         .collect()
 }
 
-/// Whether a point lies inside a closed contour: a ray to the right meets the sampled way an odd number of times.
-pub(crate) fn is_inside(path: &Path, point: Point) -> bool {
-    let mut nodes = Vec::new();
-    for element in path.elements() {
-        nodes.push(element.start());
-        if matches!(element, Element::Arc { .. }) {
-            nodes.extend(samples(element, 400).iter().map(|(p, _)| *p));
+/// The inside of a closed contour, its arcs drawn as many short lines.
+pub(crate) struct Inside(Vec<Point>);
+
+impl Inside {
+    pub(crate) fn of(path: &Path) -> Self {
+        let mut nodes = Vec::new();
+        for element in path.elements() {
+            nodes.push(element.start());
+            if matches!(element, Element::Arc { .. }) {
+                nodes.extend(samples(element, 60).iter().map(|(p, _)| *p));
+            }
         }
+        Self(nodes)
     }
-    let mut inside = false;
-    for n in 0..nodes.len() {
-        let (a, b) = (nodes[n], nodes[(n + 1) % nodes.len()]);
-        if (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-            inside = !inside;
+
+    /// A ray to the right meets the lines an odd number of times.
+    pub(crate) fn has(&self, point: Point) -> bool {
+        let mut inside = false;
+        for n in 0..self.0.len() {
+            let (a, b) = (self.0[n], self.0[(n + 1) % self.0.len()]);
+            if (a.y > point.y) != (b.y > point.y)
+                && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+            {
+                inside = !inside;
+            }
         }
+        inside
     }
-    inside
 }

@@ -31,6 +31,8 @@ pub(super) struct Piece {
     pub(super) element: usize,
     pub(super) start: Point,
     pub(super) end: Point,
+    /// From end to end, straight, mm.
+    pub(super) length: f64,
     pub(super) bend: Option<Bend>,
 }
 
@@ -55,92 +57,76 @@ impl Bend {
 impl Source {
     pub(super) fn new(path: &Path, left: f64) -> Self {
         let elements = path.elements();
-        let mut made = Self {
-            polyline: Polyline::with_capacity(elements.len() + 2, path.is_closed()),
-            index: Polyline::<f64>::new().create_approx_aabb_index(),
-            pieces: Vec::with_capacity(elements.len() + 2),
-            left,
-            elements: elements.len(),
-        };
+        let mut polyline = Polyline::with_capacity(elements.len() + 2, path.is_closed());
+        let mut pieces = Vec::with_capacity(elements.len() + 2);
         for (n, element) in elements.iter().enumerate() {
-            match *element {
-                Element::Line { start, end } => made.push(n, start, end, None),
-                Element::Arc { start, end, centre, sense } => {
-                    if is_beyond_half(start, end, centre, sense) {
-                        let middle = element.at(0.5);
-                        made.push(n, start, middle, Some((centre, sense)));
-                        made.push(n, middle, end, Some((centre, sense)));
-                    } else {
-                        made.push(n, start, end, Some((centre, sense)));
-                    }
-                }
-            }
+            push(&mut polyline, &mut pieces, n, element);
         }
-        made.close(path);
-        made.index = made.polyline.create_approx_aabb_index();
-        made
-    }
-
-    /// Adds a piece; one shorter than what the library tells apart is left out.
-    fn push(&mut self, element: usize, start: Point, end: Point, bend: Option<(Point, Sense)>) {
-        // Where something was left out in front, the piece begins at the last end that is known.
-        let start = self.pieces.last().map_or(start, |last| last.end);
-        if (end - start).norm() <= ONE_POINT {
-            return;
-        }
-        let bulge = bend.map_or(0.0, |(centre, sense)| bulge(start, end, centre, sense));
-        let bend = bend.map(|(centre, sense)| bend_through(start, end, bulge, centre, sense));
-        self.polyline.add(start.x, start.y, bulge);
-        self.pieces.push(Piece { element, start, end, bend });
-    }
-
-    /// Brings the last piece to the contour's end.
-    fn close(&mut self, path: &Path) {
-        let Some(first) = self.pieces.first().map(|piece| piece.start) else { return };
-        let Some(last) = self.pieces.last_mut() else { return };
-        if path.is_closed() {
-            last.end = first;
-        } else {
-            self.polyline.add(last.end.x, last.end.y, 0.0);
-        }
+        close(&mut polyline, &mut pieces, path);
+        let index = polyline.create_approx_aabb_index();
+        Self { polyline, index, pieces, left, elements: elements.len() }
     }
 }
 
-/// Whether an arc is more than half a circle, by more than a rounding.
-fn is_beyond_half(start: Point, end: Point, centre: Point, sense: Sense) -> bool {
-    let (from, to) = (start - centre, end - centre);
-    let sine = along(cross(from, to), sense);
-    let rounding = 1e-9 * from.norm() * to.norm();
-    start == end || (sine < 0.0 && !(from.dot(&to) < 0.0 && sine > -rounding))
-}
-
-/// The tangent of a quarter of the angle swept, positive counter-clockwise; for arcs up to half a circle.
-fn bulge(start: Point, end: Point, centre: Point, sense: Sense) -> f64 {
-    let (from, to) = (start - centre, end - centre);
-    let size = from.norm() * to.norm();
-    if size == 0.0 {
-        return 0.0;
-    }
-    let cosine = (from.dot(&to) / size).clamp(-1.0, 1.0);
-    let sine = (along(cross(from, to), sense) / size).clamp(0.0, 1.0);
-    // Two forms of one tangent, each where it loses no digits.
-    let quarter = if cosine >= 0.0 {
-        sine / (1.0 + cosine + (2.0 * (1.0 + cosine)).sqrt())
-    } else {
-        (1.0 - cosine) / (sine + (2.0 * (1.0 - cosine)).sqrt())
+/// Adds the pieces of an element; one shorter than what the library tells apart is left out.
+fn push(polyline: &mut Polyline, pieces: &mut Vec<Piece>, number: usize, element: &Element) {
+    // Where something was left out in front, the piece begins at the last end that is known.
+    let start = pieces.last().map_or(element.start(), |last| last.end);
+    let end = element.end();
+    let length = (end - start).norm();
+    let mut add = |start: Point, end, length, bulge, bend| {
+        if length > ONE_POINT {
+            polyline.add(start.x, start.y, bulge);
+            pieces.push(Piece { element: number, start, end, length, bend });
+        }
     };
-    along(quarter, sense)
+    let Element::Arc { centre, sense, .. } = *element else { return add(start, end, length, 0.0, None) };
+    let (from, to) = (start - centre, end - centre);
+    let (radius, other_radius) = (from.norm(), to.norm());
+    let bend = Bend { centre, radius, sense };
+    // Half a circle may come out a rounding beyond it.
+    let half = radius * other_radius;
+    let sine = along(cross(from, to), sense);
+    let is_beyond_half = sine < 0.0 && !(from.dot(&to) < 0.0 && sine > -1e-9 * half);
+    if (is_beyond_half || element.start() == end) && radius > ONE_POINT {
+        let middle = element.at(0.5);
+        for (start, end) in [(start, middle), (middle, end)] {
+            let length = (end - start).norm();
+            let bulge = bulge(start - centre, end - centre, length, 2.0 * radius, sense);
+            add(start, end, length, bulge, Some(through(bend, start, end, bulge)));
+        }
+    } else {
+        let bulge = bulge(from, to, length, radius + other_radius, sense);
+        let is_true = (radius - other_radius).abs() <= 1e-9;
+        add(start, end, length, bulge, Some(if is_true { bend } else { through(bend, start, end, bulge) }));
+    }
+}
+
+/// The tangent of a quarter of the angle swept, positive counter-clockwise, for arcs up to half a circle: the chord is
+/// 2 r sin of half the angle, the sum of both radii 2 r cos of it.
+fn bulge(from: Vector, to: Vector, chord: f64, both_radii: f64, sense: Sense) -> f64 {
+    along(chord / (both_radii + (from + to).norm()), sense)
+}
+
+/// Brings the last piece to the contour's end.
+fn close(polyline: &mut Polyline, pieces: &mut [Piece], path: &Path) {
+    let Some(first) = pieces.first().map(|piece| piece.start) else { return };
+    let Some(last) = pieces.last_mut() else { return };
+    if path.is_closed() {
+        last.end = first;
+    } else {
+        polyline.add(last.end.x, last.end.y, 0.0);
+    }
 }
 
 /// The circle as it was given, or through both ends where the given one misses them by a rounding of its own.
-fn bend_through(start: Point, end: Point, bulge: f64, centre: Point, sense: Sense) -> Bend {
-    let radius = (start - centre).norm();
-    if (radius - (end - centre).norm()).abs() <= 1e-9 || bulge == 0.0 {
-        return Bend { centre, radius, sense };
+fn through(bend: Bend, start: Point, end: Point, bulge: f64) -> Bend {
+    if (bend.radius - (end - bend.centre).norm()).abs() <= 1e-9 || bulge.abs() < 1e-12 {
+        return bend;
     }
     let vertex = |p: Point, bulge| PlineVertex::new(p.x, p.y, bulge);
     let (radius, centre) = seg_arc_radius_and_center(vertex(start, bulge), vertex(end, 0.0));
-    Bend { centre: Point::new(centre.x, centre.y), radius, sense }
+    Bend { centre: Point::new(centre.x, centre.y), radius, sense: bend.sense }
 }
 
 /// A number that is positive in the sense of an arc, counted counter-clockwise.

@@ -8,12 +8,15 @@ use super::source::Source;
 use super::{NEGLIGIBLE, ONE_POINT, Origin, Outline, Unreached};
 use crate::geometry::{Element, Path, Point, sweep};
 
+/// The inside corners filled, when a single outline runs beside every element of the contour in turn: nearly always.
+pub(super) fn corners_of_whole(path: &Path, source: &Source, outlines: &[Outline]) -> Option<usize> {
+    let [outline] = outlines else { return None };
+    Contour { path, source, outlines }.corners_along(outline)
+}
+
 /// The parts not reached, in the order of the contour, and the number of inside corners filled.
 pub(super) fn find(path: &Path, source: &Source, outlines: &[Outline]) -> (Vec<Unreached>, usize) {
     let contour = Contour { path, source, outlines };
-    if let Some(corners) = contour.reached_all_along() {
-        return (Vec::new(), corners);
-    }
     let (mut unreached, mut corners) = (Vec::new(), 0);
     for gap in contour.gaps() {
         if gap.is_corner {
@@ -62,9 +65,8 @@ struct Portion {
 }
 
 impl Contour<'_> {
-    /// The corners filled, when a single outline runs beside every element in turn: nearly always.
-    fn reached_all_along(&self) -> Option<usize> {
-        let [outline] = self.outlines else { return None };
+    /// The corners filled by an outline that runs beside every element in turn; none where it does not.
+    fn corners_along(&self, outline: &Outline) -> Option<usize> {
         let (mut corners, mut expected) = (0, 0);
         let ways = outline.path.elements();
         for (place, origin) in outline.origins.iter().enumerate() {
@@ -86,7 +88,8 @@ impl Contour<'_> {
     fn is_filled(&self, element: usize, node: Point) -> bool {
         let is_inner = element + 1 < self.source.elements || self.path.is_closed();
         let corner = self.path.elements()[element].end();
-        is_inner && (corner - node).norm() - self.source.left.abs() > NEGLIGIBLE
+        let most = self.source.left.abs() + NEGLIGIBLE;
+        is_inner && (corner - node).norm_squared() > most * most
     }
 
     /// What lies between the stretches, where it is long enough to be anything.
