@@ -13,6 +13,7 @@ macro_rules! say {
 
 mod check;
 mod connection;
+mod convert;
 #[cfg(feature = "demo")]
 mod demo;
 mod dialects;
@@ -23,6 +24,7 @@ mod jobs;
 mod kind;
 mod machines;
 mod motions;
+mod output;
 mod plot;
 mod question;
 mod resume;
@@ -51,6 +53,7 @@ enum Command {
     #[cfg(feature = "demo")]
     Demo(demo::Options),
     Generate(generate::Options),
+    Convert(convert::Options),
     Check(check::Options),
     Plot(plot::Options),
     Send(send::Options),
@@ -76,6 +79,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "demo")]
         Command::Demo(options) => demo::run(&options),
         Command::Generate(options) => generate::run(options),
+        Command::Convert(options) => convert::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Plot(options) => plot::run(&options),
         Command::Send(options) => send::run(options),

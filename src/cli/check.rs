@@ -62,7 +62,8 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         Some(name) => machines::load(name)?.profile,
         None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
-    let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, Model::Rotated)?;
+    let reading = Reading { of_machine: profile.dialect.clone(), ..options.reading.clone() };
+    let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {
         print_json(&as_json(&report, options))?;
@@ -73,7 +74,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         for (code, count) in &report.more {
             say!("and {count} more of {code}");
         }
-        print(account(&report, &motions.name, options).as_bytes())?;
+        print(account(&report, &motions.places.name, options).as_bytes())?;
     }
     match (report.errors, report.warnings) {
         (0, 0) => Ok(()),
@@ -118,7 +119,7 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
 }
 
 fn rendered(finding: &Finding, motions: &mut Motions) -> String {
-    let place = motions.place(finding.spot, finding.width);
+    let place = motions.places.place(finding.spot, finding.width);
     // Without a place in a text the block says where it is.
     let message = match (&place, finding.block) {
         (None, 1..) => format!("block {}: {}", finding.block, finding.message),
@@ -131,7 +132,7 @@ fn rendered(finding: &Finding, motions: &mut Motions) -> String {
     let word = format!("{}[{}]:", finding.severity.name(), finding.code);
     let mut failure = Failure::new(exit, message).called(word);
     if let Some(place) = place {
-        failure = failure.at(&motions.name, place);
+        failure = failure.at(&motions.places.name, place);
     }
     if !finding.help.is_empty() {
         failure = failure.help(finding.help.clone());

@@ -62,7 +62,8 @@ enum Picture {
 /// The wire that is drawn when none is named: molybdenum of 0.18 mm is what reciprocating machines commonly run.
 const WIRE_MM: f64 = 0.18;
 
-const PIXELS: u32 = 2400;
+/// How wide a PNG is unless it is said.
+pub(super) const PIXELS: u32 = 2400;
 
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let picture = picture_of(&options.output)?;
@@ -79,16 +80,16 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         WIRE_MM
     });
     let mut plot = Plot::new(What {
-        title: Path::new(&motions.name)
+        title: Path::new(&motions.places.name)
             .file_name()
-            .map_or_else(|| motions.name.clone(), |name| name.to_string_lossy().into_owned()),
+            .map_or_else(|| motions.places.name.clone(), |name| name.to_string_lossy().into_owned()),
         wire: (wire > 0.0).then_some(wire),
         numbers: options.numbers,
         simulated,
     });
     let mut blocks = 0;
     while let Some(motion) = motions.next() {
-        let motion = motion.map_err(|error| Failure::read(&motions.name, error))?;
+        let motion = motion.map_err(|error| Failure::read(&motions.places.name, error))?;
         blocks = motion.block;
         plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
             let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
@@ -97,8 +98,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     }
     let plotted = plot.finish();
     if plotted.extent.is_none() {
-        return Err(Failure::new(Exit::Program, format!("{} moves nothing", motions.name))
-            .help("check that this is the program that was meant"));
+        return Err(moves_nothing(&motions.places.name));
     }
     let bytes = match picture {
         Picture::Svg => plotted.picture.to_svg().into_bytes(),
@@ -115,6 +115,11 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         return print_json(&as_json(&plotted, blocks, bytes.len()));
     }
     print(account(&plotted, blocks, simulated).as_bytes())
+}
+
+pub(super) fn moves_nothing(name: &str) -> Failure {
+    Failure::new(Exit::Program, format!("{name} moves nothing"))
+        .help("check that this is the program that was meant")
 }
 
 fn is_standard_output(path: &Path) -> bool {
