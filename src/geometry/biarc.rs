@@ -95,19 +95,23 @@ pub fn fit(curve: &impl Curve, fit: &Fit) -> Result<Vec<Element>, FitError> {
             last = walk.start();
         }
         let ends = [node, last];
-        let lines = || pieces(curve, &stretch, fit, ends, Shape::Chord, ELEMENTS_MAX);
+        let lines = |count_max| pieces(curve, &stretch, fit, ends, Shape::Chord, count_max);
         let biarcs = || pieces(curve, &stretch, fit, ends, Shape::Biarc, ELEMENTS_MAX);
         let made = match fit.elements {
-            Elements::Lines => lines()?,
+            Elements::Lines => lines(ELEMENTS_MAX)?,
             Elements::Biarcs => biarcs()?,
             Elements::Fewest => {
                 let biarcs = biarcs()?;
-                // Lines are given up as soon as they are not fewer.
+                // Lines are not tried where they take far more, and given up as soon as they are not fewer.
                 let count = biarcs.len();
-                match pieces(curve, &stretch, fit, ends, Shape::Chord, count.saturating_sub(1)) {
-                    Ok(lines) => lines,
-                    Err(FitError::TooMany) => biarcs,
-                    Err(other) => return Err(other),
+                if count == 1 || stretch.lines_within(curve, fit.tolerance) > LINES_HOPELESS * count as f64 {
+                    biarcs
+                } else {
+                    match lines(count - 1) {
+                        Ok(lines) => lines,
+                        Err(FitError::TooMany) => biarcs,
+                        Err(other) => return Err(other),
+                    }
                 }
             }
         };
@@ -147,10 +151,12 @@ fn pieces(
     node.point = start;
     let mut step = whole.min(FIRST_STEP);
     while at < whole {
-        let mut good: Option<(f64, f64, Pieces)> = None;
+        let mut good: Option<Good> = None;
         let mut bad = whole;
         let mut bad_seen = false;
-        for _ in 0..TRIES {
+        let limit = fit.tolerance * MARGIN;
+        let ratio_of = |deviation: f64| fit.tolerance / deviation.max(fit.tolerance * 1e-6);
+        for attempt in 0..TRIES {
             let mut to = (at + step).min(whole);
             if whole - to < 1e-9 * whole {
                 to = whole;
@@ -164,15 +170,27 @@ fn pieces(
                 Shape::Biarc if stretch.turning(at, to) > TURN_MAX => None,
                 Shape::Biarc => Pieces::biarc(curve, stretch, [at, to], [node, goal], fit.radius_max),
             };
-            let deviation = match &made {
-                Some(pieces) => pieces.deviation(curve, stretch, [at, to], fit.tolerance),
+            // A glance finds the length; what is taken is measured.
+            let measured = |pieces: &Pieces| pieces.deviation(curve, stretch, [at, to], fit.tolerance);
+            let long_enough = |deviation: f64| to >= whole || ratio_of(deviation) < GOOD_ENOUGH;
+            let mut is_measured = attempt >= GLANCES;
+            let mut deviation = match &made {
                 None => f64::INFINITY,
+                Some(pieces) if is_measured => measured(pieces),
+                Some(pieces) => pieces.glance(curve, stretch, [at, to]),
             };
-            let ratio = fit.tolerance / deviation.max(fit.tolerance * 1e-6);
+            if let Some(pieces) = &made
+                && !is_measured
+                && deviation <= limit
+                && long_enough(deviation)
+            {
+                (deviation, is_measured) = (measured(pieces), true);
+            }
+            let ratio = ratio_of(deviation);
             match made {
-                Some(pieces) if deviation <= fit.tolerance * MARGIN => {
-                    good = Some((to, deviation, pieces));
-                    if to >= whole || (ratio < GOOD_ENOUGH) {
+                Some(pieces) if deviation <= limit => {
+                    good = Some(Good { to, pieces, is_measured });
+                    if is_measured && long_enough(deviation) {
                         break;
                     }
                     step = (to - at) * (root(ratio) * 0.985).clamp(1.02, 8.0);
@@ -186,11 +204,19 @@ fn pieces(
             }
             if bad_seen {
                 // Between what was good and what was not.
-                let low = good.as_ref().map_or(0.0, |g| g.0 - at);
                 let high = bad - at;
-                if high - low < 0.04 * high && good.is_some() {
-                    break;
+                if let Some(found) = &mut good
+                    && high - (found.to - at) < 0.04 * high
+                {
+                    if found.is_kept(curve, stretch, at, fit.tolerance) {
+                        found.is_measured = true;
+                        break;
+                    }
+                    bad = found.to;
+                    good = None;
                 }
+                let high = bad - at;
+                let low = good.as_ref().map_or(0.0, |found| found.to - at);
                 if !(low < step && step < high) {
                     step = 0.5 * (low + high);
                 }
@@ -199,13 +225,13 @@ fn pieces(
                 break;
             }
         }
-        let (to, _, made) = match good {
-            Some(found) => found,
-            None => {
+        let (to, made) = match good {
+            Some(found) if found.is_kept(curve, stretch, at, fit.tolerance) => (found.to, found.pieces),
+            _ => {
                 // Shorter than any step that could be told apart: a jump of the curve, bridged by a line.
                 let to = (at + step.max(whole * 1e-12)).min(whole);
                 let goal = if to >= whole { end } else { stretch.node(curve, to).point };
-                (to, 0.0, Pieces::chord(node.point, goal))
+                (to, Pieces::chord(node.point, goal))
             }
         };
         for element in made.elements() {
@@ -231,10 +257,30 @@ fn pieces(
     Ok(elements)
 }
 
+/// What fits so far, from where the last piece ended.
+struct Good {
+    to: f64,
+    pieces: Pieces,
+    is_measured: bool,
+}
+
+impl Good {
+    /// Whether it keeps the tolerance, measured if it has only been glanced at.
+    fn is_kept(&self, curve: &impl Curve, stretch: &Stretch, at: f64, tolerance: f64) -> bool {
+        self.is_measured
+            || self.pieces.deviation(curve, stretch, [at, self.to], tolerance) <= tolerance * MARGIN
+    }
+}
+
 /// The length of the first try, in steps of the walk.
 const FIRST_STEP: f64 = 6.0;
 /// Tries for one piece: each narrows the length; more than this find nothing better.
 const TRIES: usize = 48;
+/// Tries in which a glance is enough until the length is found.
+const GLANCES: usize = 12;
+/// Lines that are estimated to be this many times as many as biarcs are not tried: the estimate is good to a few parts in
+/// ten where a curve turns unevenly.
+const LINES_HOPELESS: f64 = 1.8;
 /// What of the tolerance is used: a peak between the places measured is known to about a hundredth.
 const MARGIN: f64 = 0.98;
 /// A piece with a tolerance no larger than this times its deviation is long enough: within four hundredths.

@@ -121,7 +121,16 @@ impl Spline {
 
     /// The homogeneous point and its derivative.
     fn evaluate(&self, t: f64) -> ([f64; 3], [f64; 3]) {
-        let p = self.degree;
+        match self.degree {
+            2 => self.blended::<3>(t, 2),
+            3 => self.blended::<4>(t, 3),
+            degree => self.blended::<{ DEGREE_MAX + 1 }>(t, degree),
+        }
+    }
+
+    /// De Boor's algorithm in room for `N` points, one more than the degree `p` or more.
+    #[inline]
+    fn blended<const N: usize>(&self, t: f64, p: usize) -> ([f64; 3], [f64; 3]) {
         let (first, last) = (p, self.controls.len() - 1);
         let t = t.clamp(self.knots[first], self.knots[last + 1]);
         // The span that holds t; the last one with length also holds its end.
@@ -129,7 +138,7 @@ impl Spline {
         while span > first && self.knots[span] >= self.knots[span + 1] {
             span -= 1;
         }
-        let mut d = [[0.0; 3]; DEGREE_MAX + 1];
+        let mut d = [[0.0; 3]; N];
         d[..=p].copy_from_slice(&self.controls[span - p..=span]);
         let mut slope = [0.0; 3];
         for level in 1..=p {
