@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, CommandFactory as _, Parser, ValueEnum, error::ErrorKind};
-use mock_controller::{FaultKind, Framing, LabelSkip, Model, Pace, Settings, Start, Torn, Until};
+use mock_controller::{
+    Dialect as Written, FaultKind, Framing, LabelSkip, Model, Pace, Settings, Start, Torn, Until,
+};
 
 /// A wire-EDM control to feed: receives 3B over a paced line, cuts it pulse by pulse, reports where it stood.
 ///
@@ -36,6 +38,10 @@ pub(crate) struct Words {
     /// What the programs are written in.
     #[arg(long, value_enum, default_value = "3b")]
     dialect: Dialect,
+
+    /// The offset the control holds, mm. 4B: + wire outside (punch), - inside (die).
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_negative_numbers = true)]
+    wire_offset: f64,
 
     /// How lines and arcs become pulses; unverified for any control.
     #[arg(long, value_enum, default_value = "rotated")]
@@ -150,6 +156,9 @@ enum Dialect {
     /// B X B Y B J G Z.
     #[value(name = "3b")]
     ThreeB,
+    /// B X B Y B J B R D|DD G Z among 3B blocks: the outline; the control holds the offset.
+    #[value(name = "4b")]
+    FourB,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -204,7 +213,7 @@ impl Words {
             (None, None, Some(device)) => At::Serial(device),
             (None, None, None) => return Err(wrong("one of --pty, --tcp and --port is needed")),
         };
-        let (Protocol::DcCodes, Dialect::ThreeB) = (self.protocol, self.dialect);
+        let Protocol::DcCodes = self.protocol;
         let baud = self.baud.unwrap_or(9600);
         let pace = if self.unpaced { Pace::Unpaced } else { Pace::Paced { baud, framing: self.framing } };
         let mut faults = BTreeMap::new();
@@ -218,6 +227,12 @@ impl Words {
         }
         let settings = Settings {
             pace,
+            dialect: match self.dialect {
+                Dialect::ThreeB => Written::ThreeB,
+                Dialect::FourB => Written::FourB,
+            },
+            // A decimal number of mm is no whole number of binary µm: 0.07 must be 70.
+            wire_offset_um: (self.wire_offset * 1e6).round() / 1e3,
             interpolator: match self.interpolator {
                 Interpolator::Rotated => Model::Rotated,
                 Interpolator::Mirrored => Model::Mirrored,

@@ -15,6 +15,7 @@
 mod cutter;
 mod flow;
 mod input;
+mod plan;
 pub(crate) mod reader;
 pub mod settings;
 mod text;
@@ -31,6 +32,7 @@ use crate::observer::{BlockEnd, Observer, Unobserved};
 use crate::report::Report;
 use cutter::{Cut, Item, Queued};
 use flow::Flow;
+use plan::Plan;
 use reader::Reader;
 use settings::{Settings, SettingsError};
 use text::Text;
@@ -54,6 +56,7 @@ pub struct Controller<O: Observer = Unobserved> {
     queue: VecDeque<Queued>,
     /// Characters of the queued blocks.
     queued_characters: usize,
+    plan: Plan,
     cut: Option<Cut>,
     tally: Tally,
     observer: O,
@@ -101,13 +104,14 @@ impl<O: Observer> Controller<O> {
             now: Duration::ZERO,
             forward: Forward::new(settings.pace, settings.fifo_bytes),
             back: Back::new(settings.pace, settings.latency),
-            reader: Reader::new(settings.label_skip),
+            reader: Reader::new(settings.dialect, settings.label_skip),
             text: Text::default(),
             faults: Faults::new(&settings.faults, settings.seed),
             utilisation: Utilisation::default(),
             flow: Flow::default(),
             queue: VecDeque::new(),
             queued_characters: 0,
+            plan: Plan::new(&settings),
             cut: None,
             tally: Tally::default(),
             observer,

@@ -60,12 +60,20 @@ pub struct Fault {
     pub travel: Travel,
 }
 
-impl fmt::Display for Cause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl Cause {
+    /// The alarm's name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
             Cause::EndlessBlock => "endless-block",
             Cause::ArcCentre => "arc-centre",
-        })
+        }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 

@@ -28,7 +28,7 @@ pub struct Report {
     /// SHA-256 of the decoded program text, in hex.
     pub sha256: String,
     /// The alarm that stopped the control: `overrun`, `buffer-overflow`, `format`, `endless-block`, `arc-centre`,
-    /// `parity`, `nak`, `nak-storm`.
+    /// `parity`, `nak`, `nak-storm`; with an offset held `tangency`, `radius`, `side`, `flag`, `lead-in`.
     pub alarm: Option<String>,
     /// The faults that really struck, by kind.
     pub faults: BTreeMap<String, u64>,

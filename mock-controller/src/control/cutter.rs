@@ -6,8 +6,10 @@
 use std::time::Duration;
 
 use super::Controller;
+use super::plan::{Motion, Planned};
+use crate::dialect::four_b::FourBlock;
 use crate::dialect::three_b::Block;
-use crate::interpolator;
+use crate::interpolator::{self, Cause};
 use crate::line::fault::FaultKind;
 use crate::observer::{BlockEnd, Observer};
 
@@ -19,7 +21,9 @@ pub(super) struct Queued {
 }
 
 pub(super) enum Item {
-    Block(Block),
+    Block(FourBlock),
+    /// A stop word D.
+    Pause,
     End,
     /// What was read instead of a block, and where.
     Malformed(String),
@@ -33,27 +37,44 @@ pub(super) struct Cut {
 }
 
 impl<O: Observer> Controller<O> {
-    /// Takes what is next out of the buffer until a block is being cut or the buffer holds none.
+    /// Takes what is next out of the plan, and out of the buffer into the plan, until a block is being cut or the buffer
+    /// holds none.
     pub(super) fn take_up(&mut self) {
         while self.cut.is_none() && self.is_running() {
-            let Some(Queued { item, characters }) = self.queue.pop_front() else {
-                break;
-            };
-            self.queued_characters -= characters;
-            match item {
-                Item::Block(block) => self.begin_cut(block, characters),
-                Item::End => self.tally.programs += 1,
-                Item::Malformed(found) => {
+            match self.plan.next() {
+                Some(Planned::Cut(motion)) => self.begin_cut(&motion),
+                Some(Planned::End) => self.tally.programs += 1,
+                Some(Planned::Alarm { name, found }) => {
                     let detail = format!("block {}, {found}", self.tally.blocks + 1);
-                    self.raise("format", Some(detail));
+                    self.raise(name, Some(detail));
                 }
+                None if self.read_on() => {}
+                None => break,
             }
-            self.drained();
         }
         self.starved();
     }
 
-    fn begin_cut(&mut self, block: Block, characters: usize) {
+    /// Hands one item of the buffer to the plan; false: there is none.
+    fn read_on(&mut self) -> bool {
+        let Some(Queued { item, characters }) = self.queue.pop_front() else {
+            return false;
+        };
+        self.queued_characters -= characters;
+        match item {
+            Item::Block(block) => self.plan.block(block, characters),
+            Item::Pause => self.plan.pause(),
+            Item::End => self.plan.end(),
+            Item::Malformed(found) => {
+                let detail = format!("block {}, {found}", self.tally.blocks + 1);
+                self.raise("format", Some(detail));
+            }
+        }
+        self.drained();
+        true
+    }
+
+    fn begin_cut(&mut self, motion: &Motion) {
         let number = self.tally.blocks + 1;
         if self.settings.alarm_at_block == Some(number) || self.faults.strikes(FaultKind::Alarm) {
             return self.raise("nak", Some(format!("block {number}: told to")));
@@ -68,7 +89,7 @@ impl<O: Observer> Controller<O> {
             }
             return self.reset();
         }
-        let line_time = self.settings.pace.time_of(u64::try_from(characters).unwrap_or(u64::MAX));
+        let line_time = self.settings.pace.time_of(u64::try_from(motion.characters).unwrap_or(u64::MAX));
         let mut takes = line_time.mul_f64(self.settings.cutting_time);
         if self.faults.strikes(FaultKind::Slow) {
             takes *= 10;
@@ -76,6 +97,9 @@ impl<O: Observer> Controller<O> {
         if self.faults.strikes(FaultKind::Stall) {
             takes += self.faults.pick_milliseconds(FaultKind::Stall, 1000, 5000);
         }
+        let Some(block) = motion.lower.block(self.settings.interpolator, self.position_um()) else {
+            return self.raise(Cause::ArcCentre.name(), Some(format!("block {number}")));
+        };
         self.cut = Some(Cut { block, began: self.now, ends: self.now + takes });
         if takes.is_zero() {
             self.step_cut();
@@ -126,11 +150,7 @@ impl<O: Observer> Controller<O> {
                 );
             }
             Err(fault) => {
-                let name = match fault.cause {
-                    interpolator::Cause::EndlessBlock => "endless-block",
-                    interpolator::Cause::ArcCentre => "arc-centre",
-                };
-                self.raise(name, Some(format!("block {number} ({block}): {fault}")));
+                self.raise(fault.cause.name(), Some(format!("block {number} ({block}): {fault}")));
             }
         }
     }

@@ -19,7 +19,8 @@
 
 use super::settings::{LabelSkip, Torn};
 use super::text::Text;
-use crate::dialect::three_b::{Assembly, Block, Step};
+use crate::dialect::four_b::{FourBlock, Step};
+use crate::dialect::{Assembly, Dialect};
 use crate::observer::Observer;
 
 pub(crate) struct Reader {
@@ -38,6 +39,8 @@ pub(crate) struct Reader {
     torn: u64,
     skipped: u64,
     after_end: bool,
+    /// A stop word D has been read since this was last asked.
+    paused: bool,
 }
 
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -63,7 +66,7 @@ struct Place {
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub(crate) enum Read {
     Nothing,
-    Block(Block),
+    Block(FourBlock),
     /// The program's end.
     End,
     /// What was found, and where.
@@ -71,11 +74,11 @@ pub(crate) enum Read {
 }
 
 impl Reader {
-    pub(crate) fn new(label_skip: LabelSkip) -> Self {
+    pub(crate) fn new(dialect: Dialect, label_skip: LabelSkip) -> Self {
         Reader {
             label_skip,
             state: if label_skip == LabelSkip::Off { State::Between } else { State::Label },
-            assembly: Assembly::default(),
+            assembly: Assembly::new(dialect),
             pending: Vec::new(),
             characters: 0,
             word: Vec::new(),
@@ -85,6 +88,7 @@ impl Reader {
             torn: 0,
             skipped: 0,
             after_end: false,
+            paused: false,
         }
     }
 
@@ -113,6 +117,11 @@ impl Reader {
         self.after_end
     }
 
+    /// Whether a stop word D has been passed since this was last asked.
+    pub(crate) fn take_pause(&mut self) -> bool {
+        std::mem::take(&mut self.paused)
+    }
+
     /// The link has closed: an unfinished block is dropped or kept.
     pub(crate) fn link_closed(&mut self, torn: Torn, text: &mut Text) {
         self.blocks_on_link = 0;
@@ -138,7 +147,7 @@ impl Reader {
     }
 
     fn clear(&mut self, text: &mut Text) {
-        self.assembly = Assembly::default();
+        self.assembly.clear();
         self.pending.clear();
         self.characters = 0;
         self.begin_label(text);
@@ -201,7 +210,8 @@ impl Reader {
                     self.state = State::Tail;
                     return self.end(text);
                 }
-                // A single D is a pause. It is passed.
+                // A single D is a pause. It is passed, but told.
+                self.paused = true;
                 self.accept(text, observer);
                 self.state = State::Between;
                 self.between(c, text, observer)
@@ -256,6 +266,7 @@ impl Reader {
             self.label_skip == LabelSkip::Auto && matches!(self.word.as_slice(), b"D" | b"DD" | b"E");
         if is_word {
             let pauses = self.word == b"D";
+            self.paused |= pauses;
             self.skipped = self.skipped.saturating_sub(self.word.len() as u64);
             self.pending.clone_from(&self.word);
             self.pending.push(b'\n');
@@ -269,7 +280,7 @@ impl Reader {
             self.state = State::Block { kept: false };
             return Read::Nothing;
         }
-        self.assembly = Assembly::default();
+        self.assembly.clear();
         self.skip_pending();
         self.state = State::Between;
         Read::Nothing
@@ -317,7 +328,7 @@ impl Reader {
     fn block(&mut self, c: u8, kept: bool, text: &mut Text, observer: &mut impl Observer) -> Read {
         if kept && c == b'%' {
             self.torn += 1;
-            self.assembly = Assembly::default();
+            self.assembly.clear();
             self.pending.clear();
             self.characters = 0;
             self.state = State::Percent { ends: false };
@@ -340,7 +351,7 @@ impl Reader {
         }
     }
 
-    fn block_complete(&mut self, block: Block, text: &mut Text, observer: &mut impl Observer) -> Read {
+    fn block_complete(&mut self, block: FourBlock, text: &mut Text, observer: &mut impl Observer) -> Read {
         self.accept(text, observer);
         self.blocks_in_program += 1;
         self.blocks_on_link += 1;

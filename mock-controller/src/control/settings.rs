@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
+use crate::dialect::Dialect;
 use crate::interpolator::Model;
 use crate::line::fault::FaultKind;
 use crate::line::pace::{Framing, Pace};
@@ -13,6 +14,11 @@ use crate::line::pace::{Framing, Pace};
 pub struct Settings {
     /// How long a character takes, in both directions. Default: 9600 baud, 7E2.
     pub pace: Pace,
+    /// What the programs are written in. Default: 3B.
+    pub dialect: Dialect,
+    /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). Default 0; with 3B it must
+    /// be 0, the offset is in the numbers.
+    pub wire_offset_um: f64,
     /// The interpolator's model. Default: `Rotated`; unverified for any control.
     pub interpolator: Model,
     /// The input buffer, characters. Default 256 (a guess; no maker's number is public).
@@ -97,6 +103,8 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             pace: Pace::Paced { baud: 9600, framing: Framing::SEVEN_EVEN_TWO },
+            dialect: Dialect::ThreeB,
+            wire_offset_um: 0.0,
             interpolator: Model::Rotated,
             buffer_bytes: 256,
             xoff_at: 192,
@@ -155,6 +163,12 @@ impl Settings {
         if self.pace == Pace::Unpaced && self.cutting_time != 0.0 {
             return Err(SettingsError::CuttingTimeUnpaced);
         }
+        if !(-OFFSET_MAX_UM..=OFFSET_MAX_UM).contains(&self.wire_offset_um) {
+            return Err(SettingsError::WireOffset(self.wire_offset_um));
+        }
+        if self.dialect == Dialect::ThreeB && self.wire_offset_um != 0.0 {
+            return Err(SettingsError::WireOffsetInNumbers);
+        }
         if self.fifo_bytes == 0 {
             return Err(SettingsError::NoFifo);
         }
@@ -189,6 +203,10 @@ pub enum SettingsError {
     CuttingTime(f64),
     /// A multiple of no time at all.
     CuttingTimeUnpaced,
+    /// Not an offset between −10 and 10 mm.
+    WireOffset(f64),
+    /// 3B describes the path of the wire's centre; the control holds no offset.
+    WireOffsetInNumbers,
     /// No room for a single character.
     NoFifo,
     /// Not a probability.
@@ -221,6 +239,12 @@ impl fmt::Display for SettingsError {
                     "an unpaced line has no character time of which the cutting time could be a multiple"
                 )
             }
+            SettingsError::WireOffset(offset_um) => {
+                write!(f, "a wire offset of {} mm is not between -10 and 10 mm", offset_um / 1000.0)
+            }
+            SettingsError::WireOffsetInNumbers => {
+                write!(f, "3B programs hold the wire offset in their numbers: the control has none")
+            }
             SettingsError::NoFifo => write!(f, "a driver FIFO of 0 takes nothing"),
             SettingsError::Rate { kind, rate } => {
                 write!(f, "fault {kind}: rate {rate} is not between 0 and 1")
@@ -230,3 +254,6 @@ impl fmt::Display for SettingsError {
 }
 
 impl std::error::Error for SettingsError {}
+
+/// A guess: no wire is thicker.
+const OFFSET_MAX_UM: f64 = 10_000.0;

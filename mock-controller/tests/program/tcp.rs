@@ -149,3 +149,20 @@ fn the_library_stops_when_told_and_refuses_settings_that_contradict_each_other()
     let error = serve_tcp(listener(), wrong, mock_controller::Unobserved, stop).unwrap_err();
     assert_eq!(error.kind(), std::io::ErrorKind::InvalidInput);
 }
+
+#[test]
+fn a_4b_program_is_cut_beside_its_outline_by_the_offset_on_the_command_line() {
+    for (offset, pulses) in [("0.1", 51_000), ("-0.07", 49_300)] {
+        let words =
+            ["--tcp", "127.0.0.1:0", "--once", "--unpaced", "--dialect", "4b", "--wire-offset", offset];
+        let mut mock = Mock::start(&words);
+        let mut stream = connect(&mock.ready);
+        assert_eq!(hear(&mut stream), 0x11);
+        let program = "%\nB5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nB5000BB5000GXL3\nDD\n%\n";
+        stream.write_all(program.as_bytes()).unwrap();
+        assert_eq!(hear(&mut stream), 0x13);
+        drop(stream);
+        let (code, report) = mock.ended();
+        assert_eq!((code, &report["pulses"], &report["blocks"]), (0, &pulses.into(), &3.into()), "{report}");
+    }
+}
