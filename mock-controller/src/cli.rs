@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::{Args, CommandFactory as _, Parser, ValueEnum, error::ErrorKind};
 use mock_controller::{
-    Dialect as Written, FaultKind, Framing, LabelSkip, Model, Pace, Settings, Start, Torn, Until,
+    Dialect as Written, FaultKind, Framing, LabelSkip, Model, Pace, Settings, Start, Taper, Torn, Until,
 };
 
 /// A wire-EDM control to feed: receives 3B over a paced line, cuts it pulse by pulse, reports where it stood.
@@ -42,6 +42,14 @@ pub(crate) struct Words {
     /// The offset the control holds, mm. 4B: + wire outside (punch), - inside (die).
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_negative_numbers = true)]
     wire_offset: f64,
+
+    /// 4B: the taper keyed in, degrees; the lead-in's flag declares its sense. An upper guide is cut as well.
+    #[arg(long, value_name = "DEG")]
+    taper: Option<f64>,
+
+    /// H2, from the plane of the program to the upper guide, mm.
+    #[arg(long, value_name = "MM", default_value_t = 100.0, requires = "taper")]
+    taper_height: f64,
 
     /// How lines and arcs become pulses; unverified for any control.
     #[arg(long, value_enum, default_value = "rotated")]
@@ -233,6 +241,7 @@ impl Words {
             },
             // A decimal number of mm is no whole number of binary µm: 0.07 must be 70.
             wire_offset_um: (self.wire_offset * 1e6).round() / 1e3,
+            taper: self.taper.map(|degrees| Taper { degrees, height_um: self.taper_height * 1000.0 }),
             interpolator: match self.interpolator {
                 Interpolator::Rotated => Model::Rotated,
                 Interpolator::Mirrored => Model::Mirrored,

@@ -69,6 +69,9 @@ struct Tally {
     pulses: u64,
     x_um: i64,
     y_um: i64,
+    /// Where the wire stands at the upper guide.
+    upper_um: [i64; 2],
+    upper_pulses: u64,
     path_length_um: f64,
     characters: u64,
     max_overrun: u64,
@@ -111,7 +114,7 @@ impl<O: Observer> Controller<O> {
             flow: Flow::default(),
             queue: VecDeque::new(),
             queued_characters: 0,
-            plan: Plan::new(&settings),
+            plan: Plan::new(&settings, [0, 0]),
             cut: None,
             tally: Tally::default(),
             observer,
@@ -275,6 +278,8 @@ impl<O: Observer> Controller<O> {
             skipped: self.reader.skipped(),
             unread: tally.unread,
             held_seconds: self.utilisation.held().as_secs_f64(),
+            upper_end_um: self.settings.taper.map(|_| tally.upper_um),
+            upper_pulses: self.settings.taper.map(|_| tally.upper_pulses),
         }
     }
 

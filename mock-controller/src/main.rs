@@ -49,6 +49,7 @@ fn run(job: &Job) -> io::Result<Outcome> {
         signal_hook::flag::register(signal, Arc::clone(&stop))?;
     }
     let files = Files::create(job.trace.as_deref(), job.save.as_deref(), job.picture.as_deref())?;
+    let files = if job.settings.taper.is_some() { files.with_upper() } else { files };
     let mut control = Controller::observed(job.settings.clone(), files).map_err(io::Error::other)?;
     let (mut link, ready) = open(job)?;
     writeln!(io::stdout(), "ready {ready}")?;

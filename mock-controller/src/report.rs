@@ -28,7 +28,7 @@ pub struct Report {
     /// SHA-256 of the decoded program text, in hex.
     pub sha256: String,
     /// The alarm that stopped the control: `overrun`, `buffer-overflow`, `format`, `endless-block`, `arc-centre`,
-    /// `parity`, `nak`, `nak-storm`; with an offset held `tangency`, `radius`, `side`, `flag`, `lead-in`.
+    /// `parity`, `nak`, `nak-storm`; with an offset held `tangency`, `radius`, `side`, `flag`, `lead-in`, `taper`.
     pub alarm: Option<String>,
     /// The faults that really struck, by kind.
     pub faults: BTreeMap<String, u64>,
@@ -49,4 +49,10 @@ pub struct Report {
     pub unread: u64,
     /// Time held between the first and the last character, s.
     pub held_seconds: f64,
+    /// Where the wire stands at the upper guide, as `end_um`; only with a taper.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_end_um: Option<[i64; 2]>,
+    /// Steps of the upper guide's axes, over the plane of the program; only with a taper.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_pulses: Option<u64>,
 }

@@ -9,7 +9,7 @@ use super::Controller;
 use super::plan::{Motion, Planned};
 use crate::dialect::four_b::FourBlock;
 use crate::dialect::three_b::Block;
-use crate::interpolator::{self, Cause};
+use crate::interpolator::{self, Cause, Fault};
 use crate::line::fault::FaultKind;
 use crate::observer::{BlockEnd, Observer};
 
@@ -32,6 +32,8 @@ pub(super) enum Item {
 /// A block being cut.
 pub(super) struct Cut {
     block: Block,
+    /// What the upper guide does meanwhile.
+    upper: Option<Block>,
     began: Duration,
     pub(super) ends: Duration,
 }
@@ -97,10 +99,13 @@ impl<O: Observer> Controller<O> {
         if self.faults.strikes(FaultKind::Stall) {
             takes += self.faults.pick_milliseconds(FaultKind::Stall, 1000, 5000);
         }
-        let Some(block) = motion.lower.block(self.settings.interpolator, self.position_um()) else {
+        let model = self.settings.interpolator;
+        let block = motion.lower.block(model, self.position_um());
+        let upper = motion.upper.map(|path| path.block(model, self.tally.upper_um));
+        let (Some(block), None | Some(Some(_))) = (block, upper) else {
             return self.raise(Cause::ArcCentre.name(), Some(format!("block {number}")));
         };
-        self.cut = Some(Cut { block, began: self.now, ends: self.now + takes });
+        self.cut = Some(Cut { block, upper: upper.flatten(), began: self.now, ends: self.now + takes });
         if takes.is_zero() {
             self.step_cut();
         }
@@ -113,23 +118,38 @@ impl<O: Observer> Controller<O> {
 
     /// Steps the block being cut.
     fn step_cut(&mut self) {
-        let Some(Cut { block, began, ends }) = self.cut.take() else {
+        let Some(Cut { block, upper, began, ends }) = self.cut.take() else {
             return;
         };
         let model = self.settings.interpolator;
         let number = self.tally.blocks + 1;
-        let start_um = [self.tally.x_um, self.tally.y_um];
+        let start_um = self.position_um();
+        let above = upper.map(|upper| (upper, self.step_upper(&upper)));
         let outcome = if self.observer.wants_pulses() {
             let span = ends - began;
-            // Times can be spread only when the number of pulses is known, so the block is stepped twice.
-            let total =
-                if span.is_zero() { 1 } else { pulses_of(interpolator::run(model, &block, |_, _| {})) };
+            // Steps can be spread only when their number is known, so the block is stepped twice.
+            let total = if span.is_zero() && above.is_none() {
+                1
+            } else {
+                pulses_of(interpolator::run(model, &block, |_, _| {}))
+            };
+            let places = above.as_ref().map_or(&[][..], |(_, above)| &above.places);
             let observer = &mut self.observer;
-            let mut count = 0;
-            interpolator::run(model, &block, |dx, dy| {
+            let (mut count, mut told) = (0, 0);
+            let outcome = interpolator::run(model, &block, |dx, dy| {
                 count += 1;
-                observer.pulse(began + share(span, count, total), number, start_um[0] + dx, start_um[1] + dy);
-            })
+                let at = began + share(span, count, total);
+                let due = part(places.len(), count, total);
+                for [u_um, v_um] in &places[told..due.max(told)] {
+                    observer.upper_pulse(at, number, *u_um, *v_um);
+                }
+                told = due.max(told);
+                observer.pulse(at, number, start_um[0] + dx, start_um[1] + dy);
+            });
+            for [u_um, v_um] in &places[told..] {
+                observer.upper_pulse(ends, number, *u_um, *v_um);
+            }
+            outcome
         } else {
             interpolator::run(model, &block, |_, _| {})
         };
@@ -140,9 +160,13 @@ impl<O: Observer> Controller<O> {
         self.tally.pulses += travel.pulses;
         self.tally.x_um += travel.dx;
         self.tally.y_um += travel.dy;
+        if let Some((upper, Above { fault: Some(fault), .. })) = above {
+            let detail = format!("block {number} ({upper} at the upper guide): {fault}");
+            return self.raise(fault.cause.name(), Some(detail));
+        }
         match outcome {
             Ok(_) => {
-                let end_um = [self.tally.x_um, self.tally.y_um];
+                let end_um = self.position_um();
                 let pulses = travel.pulses;
                 self.executed(
                     &BlockEnd { number, block, start_um, end_um, pulses, began, ended: ends },
@@ -154,6 +178,32 @@ impl<O: Observer> Controller<O> {
             }
         }
     }
+
+    /// Steps the upper guide through its block; it keeps pace with the plane of the program.
+    fn step_upper(&mut self, block: &Block) -> Above {
+        let [u_um, v_um] = self.tally.upper_um;
+        let wants_pulses = self.observer.wants_pulses();
+        let mut places = Vec::new();
+        let outcome = interpolator::run(self.settings.interpolator, block, |du, dv| {
+            if wants_pulses {
+                places.push([u_um + du, v_um + dv]);
+            }
+        });
+        let (travel, fault) = match outcome {
+            Ok(travel) => (travel, None),
+            Err(fault) => (fault.travel, Some(fault)),
+        };
+        self.tally.upper_pulses += travel.pulses;
+        self.tally.upper_um = [u_um + travel.dx, v_um + travel.dy];
+        Above { places, fault }
+    }
+}
+
+/// What the upper guide did in one block.
+struct Above {
+    /// Where each pulse brought it, if anyone wants to know.
+    places: Vec<[i64; 2]>,
+    fault: Option<Fault>,
 }
 
 fn pulses_of(outcome: Result<interpolator::Travel, interpolator::Fault>) -> u64 {
@@ -161,6 +211,12 @@ fn pulses_of(outcome: Result<interpolator::Travel, interpolator::Fault>) -> u64 
         Ok(travel) => travel.pulses,
         Err(fault) => fault.travel.pulses,
     }
+}
+
+/// How many of `whole` steps go with `count` of `total` others.
+fn part(whole: usize, count: u64, total: u64) -> usize {
+    let steps = whole as u128 * u128::from(count.min(total)) / u128::from(total.max(1));
+    usize::try_from(steps).unwrap_or(whole).min(whole)
 }
 
 /// `count` of `total` equal parts of a time span.

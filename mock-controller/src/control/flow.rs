@@ -186,7 +186,7 @@ impl<O: Observer> Controller<O> {
         self.queue.clear();
         self.queued_characters = 0;
         self.reader.reset(&mut self.text);
-        self.plan = Plan::new(&self.settings);
+        self.plan = Plan::new(&self.settings, self.position_um());
         self.flow.deaf = true;
         self.flow.held = false;
         self.flow.go_at = None;

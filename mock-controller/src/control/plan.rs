@@ -37,6 +37,8 @@ pub(super) enum Planned {
 pub(super) struct Motion {
     /// What the wire does in the plane of the program.
     pub(super) lower: Path,
+    /// What it does at the upper guide, if a taper is keyed in.
+    pub(super) upper: Option<Path>,
     /// Characters the block had on the line: its cutting time is a multiple of theirs.
     pub(super) characters: usize,
 }
@@ -73,10 +75,11 @@ pub(super) enum Plan {
 }
 
 impl Plan {
-    pub(super) fn new(settings: &Settings) -> Plan {
+    /// The plan of a control that stands somewhere.
+    pub(super) fn new(settings: &Settings, stands: [i64; 2]) -> Plan {
         match settings.dialect {
-            Dialect::FourB if settings.wire_offset_um != 0.0 => {
-                Plan::FourB(Box::new(FourBPlan::new(settings)))
+            Dialect::FourB if settings.wire_offset_um != 0.0 || settings.taper.is_some() => {
+                Plan::FourB(Box::new(FourBPlan::new(settings, stands)))
             }
             Dialect::ThreeB | Dialect::FourB => Plan::Plain { ready: VecDeque::new() },
         }
@@ -95,7 +98,7 @@ impl Plan {
         match self {
             Plan::Plain { ready } => {
                 let lower = Path::Block(block.block);
-                ready.push_back(Planned::Cut(Motion { lower, characters }));
+                ready.push_back(Planned::Cut(Motion { lower, upper: None, characters }));
             }
             Plan::FourB(plan) => plan.block(block, characters),
         }

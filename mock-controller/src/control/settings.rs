@@ -19,6 +19,8 @@ pub struct Settings {
     /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). Default 0; with 3B it must
     /// be 0, the offset is in the numbers.
     pub wire_offset_um: f64,
+    /// The taper keyed in, 4B only. Default: none, the wire is vertical.
+    pub taper: Option<Taper>,
     /// The interpolator's model. Default: `Rotated`; unverified for any control.
     pub interpolator: Model,
     /// The input buffer, characters. Default 256 (a guess; no maker's number is public).
@@ -54,6 +56,23 @@ pub struct Settings {
     pub seed: u64,
     /// When the shell leaves; the control itself does not look at it. Default: when told to stop.
     pub until: Until,
+}
+
+/// A taper as it is keyed in. The lead-in's flag declares its sense.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taper {
+    /// α, degrees, from the vertical.
+    pub degrees: f64,
+    /// H2, from the plane of the program to the upper guide, µm. The paper's is 100 mm.
+    pub height_um: f64,
+}
+
+impl Taper {
+    /// A = H2 · tan α, µm (domain/2, "The 4B block").
+    #[must_use]
+    pub fn shift_um(&self) -> f64 {
+        self.height_um * libm::tan(self.degrees.to_radians())
+    }
 }
 
 /// What becomes of an unfinished block when the link closes.
@@ -105,6 +124,7 @@ impl Default for Settings {
             pace: Pace::Paced { baud: 9600, framing: Framing::SEVEN_EVEN_TWO },
             dialect: Dialect::ThreeB,
             wire_offset_um: 0.0,
+            taper: None,
             interpolator: Model::Rotated,
             buffer_bytes: 256,
             xoff_at: 192,
@@ -169,6 +189,16 @@ impl Settings {
         if self.dialect == Dialect::ThreeB && self.wire_offset_um != 0.0 {
             return Err(SettingsError::WireOffsetInNumbers);
         }
+        if let Some(taper) = self.taper {
+            if self.dialect != Dialect::FourB {
+                return Err(SettingsError::TaperDialect);
+            }
+            let is_right = (0.0..=TAPER_MAX_DEGREES).contains(&taper.degrees)
+                && (0.0..=HEIGHT_MAX_UM).contains(&taper.height_um);
+            if !is_right {
+                return Err(SettingsError::Taper(taper));
+            }
+        }
         if self.fifo_bytes == 0 {
             return Err(SettingsError::NoFifo);
         }
@@ -207,6 +237,10 @@ pub enum SettingsError {
     WireOffset(f64),
     /// 3B describes the path of the wire's centre; the control holds no offset.
     WireOffsetInNumbers,
+    /// An angle not between 0 and 45°, or a height not between 0 and 1000 mm.
+    Taper(Taper),
+    /// Only 4B knows a taper that is keyed in.
+    TaperDialect,
     /// No room for a single character.
     NoFifo,
     /// Not a probability.
@@ -245,6 +279,12 @@ impl fmt::Display for SettingsError {
             SettingsError::WireOffsetInNumbers => {
                 write!(f, "3B programs hold the wire offset in their numbers: the control has none")
             }
+            SettingsError::Taper(Taper { degrees, height_um }) => write!(
+                f,
+                "a taper of {degrees}° over {} mm is not between 0 and 45°, 0 and 1000 mm",
+                height_um / 1000.0
+            ),
+            SettingsError::TaperDialect => write!(f, "a taper is keyed in for 4B programs only"),
             SettingsError::NoFifo => write!(f, "a driver FIFO of 0 takes nothing"),
             SettingsError::Rate { kind, rate } => {
                 write!(f, "fault {kind}: rate {rate} is not between 0 and 1")
@@ -254,6 +294,10 @@ impl fmt::Display for SettingsError {
 }
 
 impl std::error::Error for SettingsError {}
+
+/// Guesses, beyond any machine.
+const TAPER_MAX_DEGREES: f64 = 45.0;
+const HEIGHT_MAX_UM: f64 = 1e6;
 
 /// A guess: no wire is thicker.
 const OFFSET_MAX_UM: f64 = 10_000.0;

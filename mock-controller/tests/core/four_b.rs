@@ -5,10 +5,12 @@
 )]
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::time::Duration;
 
-use mock_controller::{Kind, Model, Settings, SettingsError};
+use mock_controller::{Controller, Kind, Model, Settings, SettingsError};
 
-use crate::watch::{four_b, watch};
+use crate::sender::{HOUR, Sender};
+use crate::watch::{Watch, four_b, watch};
 use crate::writer::{Order, Writer, ell};
 
 /// From the centre to a circle of R 5 and back.
@@ -244,4 +246,21 @@ fn a_3b_control_holds_no_offset_and_knows_no_fourth_field() {
     assert!(four_b(f64::NAN).validate().is_err());
     let (report, _) = watch(Settings::unpaced(), &circle("B5000DGY"));
     assert_eq!(report.alarm.as_deref(), Some("format"));
+}
+
+#[test]
+fn after_a_reset_the_outline_is_counted_from_where_the_wire_stands() {
+    let program = circle("B5000DGY");
+    let settings = Settings { reset_at_block: Some(2), ..four_b(100.0) };
+    let mut watch = Watch::default();
+    let mut control = Controller::observed(settings, &mut watch).unwrap();
+    control.link_opened(Duration::ZERO);
+    Sender::of(program.clone()).window(4096).feed(&mut control, Duration::ZERO, HOUR);
+    assert_eq!((control.blocks(), control.position_um()), (1, [5100, 0]));
+    control.link_closed(HOUR);
+    control.link_opened(HOUR);
+    Sender::of(program).window(4096).feed(&mut control, HOUR, 2 * HOUR);
+    assert_eq!((control.blocks(), control.position_um(), control.alarm()), (4, [5100, 0], None));
+    drop(control);
+    assert_eq!(watch.bounds(3..=3), [0, 10_200, -5100, 5100]);
 }

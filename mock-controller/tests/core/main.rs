@@ -9,6 +9,7 @@ mod flow;
 mod four_b;
 mod lines;
 mod sender;
+mod taper;
 mod torn;
 mod watch;
 mod writer;

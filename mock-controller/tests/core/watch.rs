@@ -16,11 +16,18 @@ pub(crate) struct Watch {
     /// Block, x, y.
     pub(crate) pulses: Vec<(u64, i64, i64)>,
     pub(crate) ends: Vec<BlockEnd>,
+    /// Block, x and y of the last pulse below, then u and v.
+    pub(crate) upper: Vec<(u64, [i64; 2], [i64; 2])>,
 }
 
 impl Observer for Watch {
     fn pulse(&mut self, _at: Duration, block: u64, x_um: i64, y_um: i64) {
         self.pulses.push((block, x_um, y_um));
+    }
+
+    fn upper_pulse(&mut self, _at: Duration, block: u64, u_um: i64, v_um: i64) {
+        let (_, x, y) = self.pulses.last().copied().unwrap_or_default();
+        self.upper.push((block, [x, y], [u_um, v_um]));
     }
 
     fn block_end(&mut self, end: &BlockEnd) {

@@ -166,3 +166,27 @@ fn a_4b_program_is_cut_beside_its_outline_by_the_offset_on_the_command_line() {
         assert_eq!((code, &report["pulses"], &report["blocks"]), (0, &pulses.into(), &3.into()), "{report}");
     }
 }
+
+#[test]
+fn with_a_taper_the_report_and_the_trace_tell_of_the_upper_guide() {
+    let mut words =
+        vec!["--tcp", "127.0.0.1:0", "--once", "--unpaced", "--dialect", "4b", "--trace", "DIR/t.csv"];
+    words.extend(["--wire-offset", "-0.1", "--taper", "1", "--taper-height", "10"]);
+    let mut mock = Mock::start(&words);
+    let mut stream = connect(&mock.ready);
+    assert_eq!(hear(&mut stream), 0x11);
+    stream.write_all(b"%\nB5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nDD\n%\n").unwrap();
+    assert_eq!(hear(&mut stream), 0x13);
+    drop(stream);
+    let (code, report) = mock.ended();
+    // A = 10 mm times the tangent of 1 degree, 0.1746 mm.
+    assert_eq!((code, &report["end_um"]), (0, &serde_json::json!([4900, 0])));
+    assert_eq!(report["upper_end_um"], serde_json::json!([4725, 0]));
+    assert_eq!(report["upper_pulses"], 9 * 4725);
+    let trace = std::fs::read_to_string(mock.file("t.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = trace.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0], ["t_s", "block", "x_um", "y_um", "u_um", "v_um"]);
+    assert_eq!(rows.len(), 1 + 9 * 4900);
+    assert_eq!(rows[rows.len() - 1][1..], ["2", "4900", "0", "4725", "0"]);
+    assert_eq!(rows[2450][1..], ["1", "2450", "0", "2362", "0"]);
+}

@@ -18,6 +18,8 @@
 //! - The lead-out is a line off the tangent, at the contour's start or just before a pause, the end, or a next flagged
 //!   lead-in. It goes from the shifted end to its nominal end: back in the start hole the wire stands where F = 0 leaves it.
 //! - A line that goes on along the tangent past the contour's start is an overlap, and shifted.
+//! - With a taper A keyed in, the upper guide's wire is cut beside the same outline at F − A (`D` on the lead-in) or F + A
+//!   (`DD`), under the same rules; over the start hole the wire is vertical.
 //! - A contour of lines alone tells no side, and an arc without a flag no radius: alarms, not guesses.
 //!
 //! Source: domain/2, "The 4B block".
@@ -35,6 +37,10 @@ pub(in crate::control) struct FourBPlan {
     model: Model,
     /// F, µm, signed.
     offset_um: f64,
+    /// A, µm, where a taper is keyed in.
+    taper_um: Option<f64>,
+    /// The offset at the upper guide, µm, once the lead-in has declared the sense of the taper.
+    upper_um: f64,
     /// Where the blocks would have come as they stand.
     nominal: [i64; 2],
     phase: Phase,
@@ -62,11 +68,13 @@ struct Held {
 }
 
 impl FourBPlan {
-    pub(super) fn new(settings: &Settings) -> FourBPlan {
+    pub(super) fn new(settings: &Settings, stands: [i64; 2]) -> FourBPlan {
         FourBPlan {
             model: settings.interpolator,
             offset_um: settings.wire_offset_um,
-            nominal: [0, 0],
+            taper_um: settings.taper.map(|taper| taper.shift_um()),
+            upper_um: 0.0,
+            nominal: stands,
             phase: Phase::Off,
             held: VecDeque::new(),
             side: None,
@@ -94,6 +102,9 @@ impl FourBPlan {
                 self.lead_in(held);
             }
             Phase::Leading { line } => {
+                if let Err((name, found)) = self.declare_taper(&line) {
+                    return self.alarm(name, found);
+                }
                 self.phase = Phase::Contour { lead_in: Some(line), start: line.element.to };
                 self.append(held);
             }
@@ -135,6 +146,20 @@ impl FourBPlan {
         } else {
             self.alarm("lead-in", format!("{}: no line leads to this arc", held.block));
         }
+    }
+
+    /// The lead-in's flag: `D` a positive taper, the upper guide's offset is F − A; `DD` the inverse, F + A.
+    fn declare_taper(&mut self, lead_in: &Held) -> Result<(), (&'static str, String)> {
+        self.upper_um = match (self.taper_um, lead_in.block.marks.map(|marks| marks.flag)) {
+            (None, _) => self.offset_um,
+            (Some(shift), Some(Flag::D)) => self.offset_um - shift,
+            (Some(shift), Some(Flag::DD)) => self.offset_um + shift,
+            (Some(_), None) => {
+                let found = format!("{}: a lead-in without D or DD, with a taper keyed in", lead_in.block);
+                return Err(("taper", found));
+            }
+        };
+        Ok(())
     }
 
     /// Takes the next element of the contour.
@@ -181,12 +206,15 @@ impl FourBPlan {
         if (radius - drawn).abs() > RADIUS_SLACK_UM {
             return Err(("radius", format!("{block}: R {radius} µm, but X and Y give {drawn:.1} µm")));
         }
-        let (grows, becomes) = match marks.flag {
-            Flag::D => (1.0, radius + self.offset_um),
-            Flag::DD => (-1.0, radius - self.offset_um),
+        let grows = match marks.flag {
+            Flag::D => 1.0,
+            Flag::DD => -1.0,
         };
-        if becomes <= 0.0 {
-            return Err(("radius", format!("{block}: R {radius} µm becomes {becomes} µm")));
+        for offset in [self.offset_um, self.upper_um] {
+            let becomes = radius + grows * offset;
+            if becomes <= 0.0 {
+                return Err(("radius", format!("{block}: R {radius} µm becomes {becomes} µm")));
+            }
         }
         let Shape::Arc { turn, .. } = held.element.shape else {
             return Ok(());
@@ -212,22 +240,23 @@ impl FourBPlan {
 
     /// One element of the contour, and before the first the lead-in.
     fn shifted(&mut self, held: &Held, next: Option<&Held>) {
-        let right = self.side.unwrap_or_default() * self.offset_um;
+        let side = self.side.unwrap_or_default();
         if let Phase::Contour { lead_in, .. } | Phase::Leaving { lead_in, .. } = &mut self.phase
             && let Some(lead_in) = lead_in.take()
-            && let Some(start) = shifted_node(None, Some(&held.element), right)
         {
-            self.cut(Path::To(start.rounded()), lead_in.characters);
+            let start = |offset| shifted_node(None, Some(&held.element), side * offset);
+            self.cut(&lead_in, |offset| start(offset).map(|start| Path::To(start.rounded())));
         }
         let next = next.map(|next| &next.element);
-        let Some(to) = shifted_node(Some(&held.element), next, right) else {
-            return;
-        };
-        let path = match held.element.shape {
-            Shape::Line => Path::To(to.rounded()),
-            Shape::Arc { centre, turn, sweep } => Path::Round { centre: centre.rounded(), turn, sweep, to },
-        };
-        self.cut(path, held.characters);
+        self.cut(held, |offset| {
+            let to = shifted_node(Some(&held.element), next, side * offset)?;
+            Some(match held.element.shape {
+                Shape::Line => Path::To(to.rounded()),
+                Shape::Arc { centre, turn, sweep } => {
+                    Path::Round { centre: centre.rounded(), turn, sweep, to }
+                }
+            })
+        });
     }
 
     /// The contour is over: all of it is set free, and then the lead-out.
@@ -237,7 +266,7 @@ impl FourBPlan {
         }
         self.flush();
         if let Some(held) = lead_out {
-            self.cut(Path::To(held.element.to.rounded()), held.characters);
+            self.cut(&held, |_| Some(Path::To(held.element.to.rounded())));
         }
         self.side = None;
         self.phase = Phase::Off;
@@ -251,11 +280,18 @@ impl FourBPlan {
     }
 
     fn as_it_stands(&mut self, held: &Held) {
-        self.cut(Path::Block(held.block.block), held.characters);
+        self.cut(held, |_| Some(Path::Block(held.block.block)));
     }
 
-    fn cut(&mut self, lower: Path, characters: usize) {
-        self.ready.push_back(Planned::Cut(Motion { lower, characters }));
+    /// Has a block cut along the path that an offset gives it, below and, with a taper, above.
+    fn cut(&mut self, held: &Held, path: impl Fn(f64) -> Option<Path>) {
+        let as_it_stands = Path::Block(held.block.block);
+        // Without an offset a block stays what it is.
+        let along =
+            |offset: f64| if offset == 0.0 { as_it_stands } else { path(offset).unwrap_or(as_it_stands) };
+        let lower = along(self.offset_um);
+        let upper = self.taper_um.map(|_| path(self.upper_um).unwrap_or(as_it_stands));
+        self.ready.push_back(Planned::Cut(Motion { lower, upper, characters: held.characters }));
     }
 
     fn not_tangent(&mut self, held: &Held) {
