@@ -4,6 +4,7 @@
 //! characters come off the line.
 
 pub mod four_b;
+pub mod gcode;
 pub mod three_b;
 
 /// What the programs are written in.
@@ -15,6 +16,8 @@ pub enum Dialect {
     ThreeB,
     /// `B X B Y B J B R D|DD G Z` among 3B blocks: the outline; the control holds the offset.
     FourB,
+    /// Lines of words: the path or the outline, absolute or incremental.
+    Gcode,
 }
 
 /// A block being put together, in a dialect whose blocks are recognised by their pattern.
@@ -25,10 +28,12 @@ pub(crate) enum Assembly {
 }
 
 impl Assembly {
-    pub(crate) fn new(dialect: Dialect) -> Assembly {
+    /// `None`: a dialect of lines.
+    pub(crate) fn new(dialect: Dialect) -> Option<Assembly> {
         match dialect {
-            Dialect::ThreeB => Assembly::ThreeB(three_b::Assembly::default()),
-            Dialect::FourB => Assembly::FourB(four_b::Assembly::default()),
+            Dialect::ThreeB => Some(Assembly::ThreeB(three_b::Assembly::default())),
+            Dialect::FourB => Some(Assembly::FourB(four_b::Assembly::default())),
+            Dialect::Gcode => None,
         }
     }
 

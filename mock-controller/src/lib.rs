@@ -18,7 +18,8 @@
 //! Everything above is sans-IO: time is a [`std::time::Duration`] since an origin of the caller's choice and only moves by
 //! [`Controller::advance`]. [`shell`] alone has a clock, a pseudo-terminal, a socket or a serial device.
 //!
-//! What it deliberately does not do: other dialects than 3B and 4B, other protocols than the DC codes.
+//! What it deliberately does not do: other dialects than 3B, 4B and plain G-code (no macros), other protocols
+//! than the DC codes, taper in G-code.
 #![warn(missing_docs)]
 
 pub mod control;
@@ -33,6 +34,7 @@ pub mod shell;
 
 pub use control::Controller;
 pub use control::settings::{LabelSkip, Settings, SettingsError, Start, Taper, Torn, Until};
+pub use control::{ArcCentre, GcodeSettings, IgnoredWords, NotAWord, UnitWithoutPoint};
 pub use dialect::Dialect;
 pub use dialect::four_b::{Flag, FourBlock, Fourth, Marks, parse_four_block};
 pub use dialect::three_b::{Axis, Block, Kind, Quadrant, parse_block};

@@ -6,10 +6,12 @@
 use std::time::Duration;
 
 use super::Controller;
-use super::plan::{Motion, Planned};
+use super::plan::{Motion, Planned, Stroke};
 use crate::dialect::four_b::FourBlock;
+use crate::dialect::gcode::Line;
 use crate::dialect::three_b::Block;
-use crate::interpolator::{self, Cause, Fault};
+use crate::interpolator::length::length_um;
+use crate::interpolator::{self, Cause, Fault, Model, Travel};
 use crate::line::fault::FaultKind;
 use crate::observer::{BlockEnd, Observer};
 
@@ -22,6 +24,7 @@ pub(super) struct Queued {
 
 pub(super) enum Item {
     Block(FourBlock),
+    Line(Line),
     /// A stop word D.
     Pause,
     End,
@@ -31,7 +34,8 @@ pub(super) enum Item {
 
 /// A block being cut.
 pub(super) struct Cut {
-    block: Block,
+    /// One after the other; the first is the block, as it is told of.
+    strokes: Vec<Stroke>,
     /// What the upper guide does meanwhile.
     upper: Option<Block>,
     began: Duration,
@@ -65,6 +69,7 @@ impl<O: Observer> Controller<O> {
         self.queued_characters -= characters;
         match item {
             Item::Block(block) => self.plan.block(block, characters),
+            Item::Line(line) => self.plan.line(line, characters),
             Item::Pause => self.plan.pause(),
             Item::End => self.plan.end(),
             Item::Malformed(found) => {
@@ -100,12 +105,12 @@ impl<O: Observer> Controller<O> {
             takes += self.faults.pick_milliseconds(FaultKind::Stall, 1000, 5000);
         }
         let model = self.settings.interpolator;
-        let block = motion.lower.block(model, self.position_um());
+        let strokes = motion.strokes(model, self.position_um());
         let upper = motion.upper.map(|path| path.block(model, self.tally.upper_um));
-        let (Some(block), None | Some(Some(_))) = (block, upper) else {
+        let (Some(strokes), None | Some(Some(_))) = (strokes, upper) else {
             return self.raise(Cause::ArcCentre.name(), Some(format!("block {number}")));
         };
-        self.cut = Some(Cut { block, upper: upper.flatten(), began: self.now, ends: self.now + takes });
+        self.cut = Some(Cut { strokes, upper: upper.flatten(), began: self.now, ends: self.now + takes });
         if takes.is_zero() {
             self.step_cut();
         }
@@ -118,25 +123,25 @@ impl<O: Observer> Controller<O> {
 
     /// Steps the block being cut.
     fn step_cut(&mut self) {
-        let Some(Cut { block, upper, began, ends }) = self.cut.take() else {
+        let Some(Cut { strokes, upper, began, ends }) = self.cut.take() else {
             return;
         };
         let model = self.settings.interpolator;
         let number = self.tally.blocks + 1;
         let start_um = self.position_um();
         let above = upper.map(|upper| (upper, self.step_upper(&upper)));
-        let outcome = if self.observer.wants_pulses() {
+        let done = if self.observer.wants_pulses() {
             let span = ends - began;
             // Steps can be spread only when their number is known, so the block is stepped twice.
             let total = if span.is_zero() && above.is_none() {
                 1
             } else {
-                pulses_of(interpolator::run(model, &block, |_, _| {}))
+                run_all(model, &strokes, |_, _| {}).travel.pulses
             };
             let places = above.as_ref().map_or(&[][..], |(_, above)| &above.places);
             let observer = &mut self.observer;
             let (mut count, mut told) = (0, 0);
-            let outcome = interpolator::run(model, &block, |dx, dy| {
+            let done = run_all(model, &strokes, |dx, dy| {
                 count += 1;
                 let at = began + share(span, count, total);
                 let due = part(places.len(), count, total);
@@ -149,14 +154,11 @@ impl<O: Observer> Controller<O> {
             for [u_um, v_um] in &places[told..] {
                 observer.upper_pulse(ends, number, *u_um, *v_um);
             }
-            outcome
+            done
         } else {
-            interpolator::run(model, &block, |_, _| {})
+            run_all(model, &strokes, |_, _| {})
         };
-        let travel = match &outcome {
-            Ok(travel) => *travel,
-            Err(fault) => fault.travel,
-        };
+        let Done { travel, length_um, fault } = done;
         self.tally.pulses += travel.pulses;
         self.tally.x_um += travel.dx;
         self.tally.y_um += travel.dy;
@@ -164,19 +166,16 @@ impl<O: Observer> Controller<O> {
             let detail = format!("block {number} ({upper} at the upper guide): {fault}");
             return self.raise(fault.cause.name(), Some(detail));
         }
-        match outcome {
-            Ok(_) => {
-                let end_um = self.position_um();
-                let pulses = travel.pulses;
-                self.executed(
-                    &BlockEnd { number, block, start_um, end_um, pulses, began, ended: ends },
-                    &travel,
-                );
-            }
-            Err(fault) => {
-                self.raise(fault.cause.name(), Some(format!("block {number} ({block}): {fault}")));
-            }
+        if let Some((block, fault)) = fault {
+            return self.raise(fault.cause.name(), Some(format!("block {number} ({block}): {fault}")));
         }
+        let Some(Stroke { block, .. }) = strokes.first().copied() else {
+            return;
+        };
+        let end_um = self.position_um();
+        let pulses = travel.pulses;
+        let end = BlockEnd { number, block, start_um, end_um, pulses, began, ended: ends };
+        self.executed(&end, length_um);
     }
 
     /// Steps the upper guide through its block; it keeps pace with the plane of the program.
@@ -206,11 +205,34 @@ struct Above {
     fault: Option<Fault>,
 }
 
-fn pulses_of(outcome: Result<interpolator::Travel, interpolator::Fault>) -> u64 {
-    match outcome {
-        Ok(travel) => travel.pulses,
-        Err(fault) => fault.travel.pulses,
+/// What all strokes of a block did.
+struct Done {
+    travel: Travel,
+    length_um: f64,
+    fault: Option<(Block, Fault)>,
+}
+
+/// Steps one stroke after the other; `pulse` is told the place from where the first began.
+fn run_all(model: Model, strokes: &[Stroke], mut pulse: impl FnMut(i64, i64)) -> Done {
+    let mut done = Done { travel: Travel::default(), length_um: 0.0, fault: None };
+    for stroke in strokes {
+        let (dx, dy) = (done.travel.dx, done.travel.dy);
+        let outcome = interpolator::run(model, &stroke.block, |x, y| pulse(dx + x, dy + y));
+        let travel = match outcome {
+            Ok(travel) => travel,
+            Err(fault) => {
+                done.fault = Some((stroke.block, fault));
+                fault.travel
+            }
+        };
+        done.length_um += stroke.length_um.unwrap_or_else(|| length_um(&stroke.block, &travel));
+        done.travel =
+            Travel { dx: dx + travel.dx, dy: dy + travel.dy, pulses: done.travel.pulses + travel.pulses };
+        if done.fault.is_some() {
+            break;
+        }
     }
+    done
 }
 
 /// How many of `whole` steps go with `count` of `total` others.

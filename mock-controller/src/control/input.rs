@@ -79,6 +79,7 @@ impl<O: Observer> Controller<O> {
         let item = match read {
             Read::Nothing => return self.filled(),
             Read::Block(block) => Item::Block(block),
+            Read::Line(line) => Item::Line(line),
             Read::End => Item::End,
             Read::Malformed(found) => Item::Malformed(found),
         };
@@ -87,6 +88,9 @@ impl<O: Observer> Controller<O> {
         }
         let characters = self.reader.take_characters();
         self.enqueue(item, characters);
+        if self.reader.take_end() {
+            self.enqueue(Item::End, 0);
+        }
         self.filled();
         self.take_up();
     }

@@ -19,8 +19,9 @@
 
 use super::settings::{LabelSkip, Torn};
 use super::text::Text;
+use crate::dialect::Assembly;
 use crate::dialect::four_b::{FourBlock, Step};
-use crate::dialect::{Assembly, Dialect};
+use crate::dialect::gcode::Line;
 use crate::observer::Observer;
 
 pub(crate) struct Reader {
@@ -67,6 +68,8 @@ struct Place {
 pub(crate) enum Read {
     Nothing,
     Block(FourBlock),
+    /// In a dialect of lines.
+    Line(Line),
     /// The program's end.
     End,
     /// What was found, and where.
@@ -74,11 +77,11 @@ pub(crate) enum Read {
 }
 
 impl Reader {
-    pub(crate) fn new(dialect: Dialect, label_skip: LabelSkip) -> Self {
+    pub(crate) fn new(assembly: Assembly, label_skip: LabelSkip) -> Self {
         Reader {
             label_skip,
             state: if label_skip == LabelSkip::Off { State::Between } else { State::Label },
-            assembly: Assembly::new(dialect),
+            assembly,
             pending: Vec::new(),
             characters: 0,
             word: Vec::new(),

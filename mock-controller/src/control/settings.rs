@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
+use super::plan::gcode::GcodeSettings;
 use crate::dialect::Dialect;
 use crate::interpolator::Model;
 use crate::line::fault::FaultKind;
@@ -16,11 +17,14 @@ pub struct Settings {
     pub pace: Pace,
     /// What the programs are written in. Default: 3B.
     pub dialect: Dialect,
-    /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). Default 0; with 3B it must
-    /// be 0, the offset is in the numbers.
+    /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). G-code: what every `D` but
+    /// `D0` stands for, not negative; the side is G41's and G42's. Default 0; with 3B it must be 0, the offset is in the
+    /// numbers.
     pub wire_offset_um: f64,
     /// The taper keyed in, 4B only. Default: none, the wire is vertical.
     pub taper: Option<Taper>,
+    /// How G-code is read.
+    pub gcode: GcodeSettings,
     /// The interpolator's model. Default: `Rotated`; unverified for any control.
     pub interpolator: Model,
     /// The input buffer, characters. Default 256 (a guess; no maker's number is public).
@@ -125,6 +129,7 @@ impl Default for Settings {
             dialect: Dialect::ThreeB,
             wire_offset_um: 0.0,
             taper: None,
+            gcode: GcodeSettings::default(),
             interpolator: Model::Rotated,
             buffer_bytes: 256,
             xoff_at: 192,
@@ -189,6 +194,9 @@ impl Settings {
         if self.dialect == Dialect::ThreeB && self.wire_offset_um != 0.0 {
             return Err(SettingsError::WireOffsetInNumbers);
         }
+        if self.dialect == Dialect::Gcode && self.wire_offset_um < 0.0 {
+            return Err(SettingsError::NegativeOffset(self.wire_offset_um));
+        }
         if let Some(taper) = self.taper {
             if self.dialect != Dialect::FourB {
                 return Err(SettingsError::TaperDialect);
@@ -237,6 +245,8 @@ pub enum SettingsError {
     WireOffset(f64),
     /// 3B describes the path of the wire's centre; the control holds no offset.
     WireOffsetInNumbers,
+    /// In G-code the side is told by G41 and G42, not by a sign.
+    NegativeOffset(f64),
     /// An angle not between 0 and 45°, or a height not between 0 and 1000 mm.
     Taper(Taper),
     /// Only 4B knows a taper that is keyed in.
@@ -279,6 +289,11 @@ impl fmt::Display for SettingsError {
             SettingsError::WireOffsetInNumbers => {
                 write!(f, "3B programs hold the wire offset in their numbers: the control has none")
             }
+            SettingsError::NegativeOffset(offset_um) => write!(
+                f,
+                "a wire offset of {} mm is negative: in G-code G41 and G42 tell the side",
+                offset_um / 1000.0
+            ),
             SettingsError::Taper(Taper { degrees, height_um }) => write!(
                 f,
                 "a taper of {degrees}° over {} mm is not between 0 and 45°, 0 and 1000 mm",

@@ -5,9 +5,7 @@
 //!
 //! Where the manuals are silent: that the control knows its own interpolator so well is a choice made here.
 
-use std::f64::consts::{PI, TAU};
-
-use super::{Point, Turn, travel};
+use super::{Point, Turn, swept, travel};
 use crate::dialect::three_b::{Axis, Block, Kind, Quadrant};
 use crate::interpolator::{Model, run};
 
@@ -43,7 +41,7 @@ pub(crate) fn arc(
     let from_centre = Point::whole(start);
     let end = to.minus(Point::whole(centre));
     let (angle, radius) = (from_centre.angle(), from_centre.length());
-    let sweep = sweep + wrapped(turn.sign() * (end.angle() - angle) - sweep);
+    let sweep = swept(Point::default(), turn, from_centre, end, sweep);
     let g = if end.x.abs() < end.y.abs() { Axis::X } else { Axis::Y };
     let kind = match turn {
         Turn::Clockwise => Kind::Clockwise,
@@ -120,17 +118,13 @@ fn counted(length: f64) -> u32 {
     length.round() as u32
 }
 
-/// An angle in (−π, π].
-fn wrapped(angle: f64) -> f64 {
-    let turned = angle.rem_euclid(TAU);
-    if turned > PI { turned - TAU } else { turned }
-}
-
 /// How far from the geometry a J is tried, µm: an arc over many quadrants ends up to 6.7 µm off (domain/2, [sim]).
 const REACH_UM: u32 = 8;
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     #[test]

@@ -3,10 +3,12 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests, too, fail by panicking")]
 
 mod arcs;
+mod beside;
 mod ends;
 mod faults;
 mod flow;
 mod four_b;
+mod gcode;
 mod lines;
 mod sender;
 mod taper;

@@ -190,3 +190,34 @@ fn with_a_taper_the_report_and_the_trace_tell_of_the_upper_guide() {
     assert_eq!(rows[rows.len() - 1][1..], ["2", "4900", "0", "4725", "0"]);
     assert_eq!(rows[2450][1..], ["1", "2450", "0", "2362", "0"]);
 }
+
+#[test]
+fn a_g_code_program_is_read_as_the_command_line_says() {
+    let mut words =
+        vec!["--tcp", "127.0.0.1:0", "--once", "--unpaced", "--dialect", "gcode", "--wire-offset", "0.1"];
+    words.extend([
+        "--arc-centre",
+        "absolute",
+        "--unit-without-point",
+        "um",
+        "--block-skip",
+        "--ignore-words",
+        "G54",
+    ]);
+    let mut mock = Mock::start(&words);
+    let mut stream = connect(&mock.ready);
+    assert_eq!(hear(&mut stream), 0x11);
+    let program = b"%\nG54 G01 X1000\n/X9000\nG41 X5.\nG02 X5. Y0 I10000 J0\nG40 G01 X1.\nM02\n%\n";
+    stream.write_all(program).unwrap();
+    assert_eq!(hear(&mut stream), 0x13);
+    drop(stream);
+    let (code, report) = mock.ended();
+    // The circle of R 5 about (10, 0), clockwise with the wire on its left: R 5.1, from (4.9, 0).
+    assert_eq!(
+        (code, &report["blocks"], &report["end_um"]),
+        (0, &4.into(), &serde_json::json!([1000, 0])),
+        "{report}"
+    );
+    assert_eq!(report["pulses"], 1000 + 3900 + 8 * 5100 + 3900);
+    assert_eq!(report["words_passed_over"], serde_json::json!({"G54": 1}));
+}

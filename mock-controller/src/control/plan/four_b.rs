@@ -31,7 +31,7 @@ use crate::control::settings::Settings;
 use crate::dialect::four_b::{Flag, FourBlock, Fourth};
 use crate::dialect::three_b::Kind;
 use crate::interpolator::{Model, run};
-use crate::outline::{Element, Point, Shape, shifted_node};
+use crate::outline::{Element, Point, Shape, are_tangent, shifted_node};
 
 pub(in crate::control) struct FourBPlan {
     model: Model,
@@ -253,7 +253,7 @@ impl FourBPlan {
             Some(match held.element.shape {
                 Shape::Line => Path::To(to.rounded()),
                 Shape::Arc { centre, turn, sweep } => {
-                    Path::Round { centre: centre.rounded(), turn, sweep, to }
+                    Path::Round { centre: centre.rounded(), turn, sweep, to, ends: None }
                 }
             })
         });
@@ -291,7 +291,7 @@ impl FourBPlan {
             |offset: f64| if offset == 0.0 { as_it_stands } else { path(offset).unwrap_or(as_it_stands) };
         let lower = along(self.offset_um);
         let upper = self.taper_um.map(|_| path(self.upper_um).unwrap_or(as_it_stands));
-        self.ready.push_back(Planned::Cut(Motion { lower, upper, characters: held.characters }));
+        self.ready.push_back(Planned::Cut(Motion { lower, then: None, upper, characters: held.characters }));
     }
 
     fn not_tangent(&mut self, held: &Held) {
@@ -311,20 +311,6 @@ impl Held {
         self.block.marks.is_some() && self.block.block.kind == Kind::Line
     }
 }
-
-/// Whether the one goes on in the direction in which the other ends, as far as whole µm can tell.
-fn are_tangent(before: &Element, after: &Element) -> bool {
-    let (ends, starts) = (before.ends_towards(), after.starts_towards());
-    let angle = libm::atan2(ends.cross(starts).abs(), ends.dot(starts));
-    angle <= TANGENT_RAD + NODE_SLACK_UM / before.size() + NODE_SLACK_UM / after.size()
-}
-
-/// A guess: about 1°. At an offset of 0.1 mm it leaves a step of 2 µm.
-const TANGENT_RAD: f64 = 0.02;
-
-/// What the rounding of a node and a centre may turn a direction by, times the element's size: half a micron each way
-/// for both, and one for the interpolator.
-const NODE_SLACK_UM: f64 = 3.0;
 
 /// How far R may be from what X and Y give: half a micron each, and a writer's choice among neighbours (a guess).
 const RADIUS_SLACK_UM: f64 = 5.0;
