@@ -20,6 +20,10 @@ pub(crate) struct Words {
     #[command(flatten)]
     place: Place,
 
+    /// A file of these options, one `key = value` a line, keys without the dashes; the command line goes before it.
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+
     /// How the control and its sender talk.
     #[arg(long, value_enum, default_value = "dc-codes")]
     protocol: Protocol,

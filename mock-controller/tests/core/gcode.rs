@@ -81,6 +81,14 @@ fn full_circles_and_arcs_end_where_they_should_in_every_model() {
 }
 
 #[test]
+fn an_arc_whose_end_is_a_little_off_its_circle_still_ends_there() {
+    assert_eq!(
+        ends("G01 X10.\nG03 X0. Y10.003 I-10.\nX-10. Y-.002 J-10."),
+        [[10_000, 0], [0, 10_003], [-10_000, -2]]
+    );
+}
+
+#[test]
 fn the_four_arcs_of_a_radius_between_two_points_lie_on_their_four_circles() {
     // Chord of 6 along X, R 5: the centres are 4 above and below its middle.
     for (words, y, furthest) in [

@@ -168,6 +168,22 @@ fn a_4b_program_is_cut_beside_its_outline_by_the_offset_on_the_command_line() {
 }
 
 #[test]
+fn a_machines_file_stands_for_the_options_it_holds() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), "# a die\ndialect = \"4b\"\nwire-offset = -0.2\nbaud = 4800\nonce = true\n")
+        .unwrap();
+    let words = ["--tcp", "127.0.0.1:0", "--machine", file.path().to_str().unwrap(), "--unpaced"];
+    let mut mock = Mock::start(&words);
+    let mut stream = connect(&mock.ready);
+    assert_eq!(hear(&mut stream), 0x11);
+    stream.write_all(b"%\nB5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nDD\n").unwrap();
+    assert_eq!(hear(&mut stream), 0x13);
+    drop(stream);
+    let (code, report) = mock.ended();
+    assert_eq!((code, &report["pulses"]), (0, &(9 * 4800).into()), "{report}");
+}
+
+#[test]
 fn with_a_taper_the_report_and_the_trace_tell_of_the_upper_guide() {
     let mut words =
         vec!["--tcp", "127.0.0.1:0", "--once", "--unpaced", "--dialect", "4b", "--trace", "DIR/t.csv"];
