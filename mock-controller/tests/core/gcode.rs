@@ -5,12 +5,13 @@
 )]
 
 use std::f64::consts::PI;
+use std::time::Duration;
 
 use mock_controller::{
-    ArcCentre, Dialect, GcodeSettings, Model, Report, Settings, SettingsError, UnitWithoutPoint,
+    ArcCentre, Controller, Dialect, GcodeSettings, Model, Report, Settings, SettingsError, Torn, UnitWithoutPoint,
 };
 
-use crate::sender::sha256;
+use crate::sender::{HOUR, Sender, run, sha256};
 use crate::watch::{Watch, watch};
 
 pub(crate) fn gcode(wire_offset_um: f64) -> Settings {
@@ -284,4 +285,56 @@ fn subprograms_behind_the_main_program_are_called_and_call_each_other() {
 #[test]
 fn settings_that_mean_nothing_are_refused() {
     assert_eq!(gcode(-70.0).validate(), Err(SettingsError::NegativeOffset(-70.0)));
+}
+
+/// One connection: opens, sends all at once, closes at once.
+fn connect(control: &mut Controller, now: Duration, text: &str) {
+    control.link_opened(now);
+    assert_eq!(control.send(text.as_bytes(), now), text.len());
+    control.link_closed(now);
+}
+
+#[test]
+fn an_unfinished_line_is_dropped_or_joins_the_next_bytes() {
+    for (torn, next, blocks, end, dropped) in [
+        (Torn::Drop, "0.\nY1.\n%\n", 2, [1000, 1000], 1),
+        (Torn::Keep, "0.\nY1.\n%\n", 3, [20_000, 1000], 0),
+        (Torn::Keep, "%\nY1.\n%\n", 2, [1000, 1000], 1),
+    ] {
+        let settings = Settings { dialect: Dialect::Gcode, torn, ..Settings::default() };
+        let mut control = Controller::new(settings).unwrap();
+        connect(&mut control, Duration::ZERO, "%\nG01 X1.\nX2");
+        connect(&mut control, HOUR, next);
+        control.advance(2 * HOUR);
+        let report = control.report();
+        assert_eq!((report.blocks, report.end_um, report.torn), (blocks, end, dropped), "{torn:?} {next:?}");
+        assert_eq!((report.alarm, report.programs), (None, 1), "{torn:?} {next:?}");
+    }
+}
+
+#[test]
+fn a_paced_program_is_held_and_loses_nothing() {
+    let line = "G91 G01 X0.010\n";
+    let program = format!("%\n{}M02\n%\n", line.repeat(200));
+    let mut sender = Sender::of(program.clone());
+    let report = run(Settings { dialect: Dialect::Gcode, ..Settings::default() }, &mut sender);
+    assert_eq!((report.blocks, report.end_um, report.alarm, report.programs), (200, [2000, 0], None, 1));
+    assert!(report.holds >= 3, "{}", report.holds);
+    assert_eq!(report.sha256, sha256(&program.replace("%\n", "")));
+    let mut heedless = Sender::of(program).heedless();
+    let report = run(Settings { dialect: Dialect::Gcode, ..Settings::default() }, &mut heedless);
+    assert_eq!(report.alarm.as_deref(), Some("overrun"));
+}
+
+#[test]
+fn after_a_reset_the_programs_zero_is_where_it_was() {
+    let settings = Settings { reset_at_block: Some(2), ..gcode(0.0) };
+    let mut control = Controller::new(settings).unwrap();
+    control.link_opened(Duration::ZERO);
+    Sender::of("%\nG01 X1.\nX2.\n%\n").window(4096).feed(&mut control, Duration::ZERO, HOUR);
+    assert_eq!((control.blocks(), control.position_um()), (1, [1000, 0]));
+    control.link_closed(HOUR);
+    control.link_opened(HOUR);
+    Sender::of("%\nG01 X2. Y1.\n%\n").window(4096).feed(&mut control, HOUR, 2 * HOUR);
+    assert_eq!((control.blocks(), control.position_um(), control.alarm()), (2, [2000, 1000], None));
 }
