@@ -15,6 +15,8 @@
 //! It does not read drawings, measure anything or know where its points come from. Letters are single strokes, as an
 //! engraver cuts them, so no font is needed on the machine that draws or on the one that looks.
 
+pub mod dxf;
+
 mod extent;
 mod outline;
 mod shape;

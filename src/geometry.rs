@@ -2,7 +2,15 @@
 //!
 //! An element knows its ends exactly: the end of one and the start of the next are the same `f64` bits, so a closed
 //! contour is closed by construction. Trigonometry comes from `libm`, so that the same part gives the same blocks
-//! on every platform. Offsetting a free outline is not here.
+//! on every platform.
+
+pub mod biarc;
+mod measure;
+pub mod offset;
+pub mod path;
+
+pub use measure::turn;
+pub use path::Path;
 
 use nalgebra::{Point2, Vector2};
 
@@ -68,6 +76,17 @@ impl Element {
     pub fn end(&self) -> Point {
         match *self {
             Self::Line { end, .. } | Self::Arc { end, .. } => end,
+        }
+    }
+
+    /// The same way run backwards.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Line { start, end } => Self::Line { start: end, end: start },
+            Self::Arc { start, end, centre, sense } => {
+                Self::Arc { start: end, end: start, centre, sense: sense.reversed() }
+            }
         }
     }
 

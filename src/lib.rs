@@ -6,6 +6,8 @@ pub mod place;
 
 pub mod geometry;
 
+pub mod motion;
+
 pub mod shapes;
 
 pub mod interpolator;
@@ -13,6 +15,10 @@ pub mod interpolator;
 pub mod rounding;
 
 pub mod formats;
+
+pub mod compensation;
+
+pub mod cutting;
 
 pub mod program;
 
@@ -27,6 +33,10 @@ pub mod profile;
 pub mod link;
 
 pub mod drawing;
+
+pub mod check;
+
+pub mod plot;
 
 pub mod keys;
 

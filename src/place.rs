@@ -1,8 +1,20 @@
 //! A place in a text someone wrote: line, column, byte, and enough of the line to put a caret under it.
 
 use std::fmt;
+use std::io::{self, Read, Seek, SeekFrom};
 
-/// Where in a source something stands.
+/// Where in a source something stands, in numbers alone: what a reader keeps for every block.
+#[derive(Clone, Copy, Debug, Default, Eq, Ord, PartialEq, PartialOrd)]
+pub struct Spot {
+    /// Offset from the start of the source, in bytes.
+    pub byte: u64,
+    /// Line, from 1; 0 for what no one wrote.
+    pub line: u64,
+    /// Column, from 1, in bytes.
+    pub column: u64,
+}
+
+/// Where in a source something stands, with the text to show for it.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Place {
     /// Line, from 1.
@@ -34,6 +46,30 @@ impl Place {
             start - line_start,
             end.saturating_sub(start),
         )
+    }
+
+    /// Where it is, without the text.
+    #[must_use]
+    pub fn spot(&self) -> Spot {
+        Spot { byte: self.byte, line: self.line, column: self.column }
+    }
+
+    /// The place of `width` bytes at a spot, its line read again from the source: a reader holds no text it has passed.
+    ///
+    /// # Errors
+    ///
+    /// When the source cannot be read there.
+    pub fn read_again(source: &mut (impl Read + Seek), spot: Spot, width: usize) -> io::Result<Self> {
+        let before = (spot.column.max(1) - 1).min(EXCERPT_BEFORE as u64);
+        source.seek(SeekFrom::Start(spot.byte - before))?;
+        let mut bytes = Vec::new();
+        source.take(before + EXCERPT_AFTER as u64).read_to_end(&mut bytes)?;
+        let start = before as usize;
+        let end = bytes[start.min(bytes.len())..].iter().position(|b| matches!(b, b'\n' | b'\r'));
+        bytes.truncate(end.map_or(bytes.len(), |end| start + end));
+        let mut place = Self::in_line(&bytes, spot.line, spot.byte - before, start, width);
+        place.column = spot.column;
+        Ok(place)
     }
 
     /// The place of `width` bytes at `at` in a line that begins at byte `line_byte` of its source.
@@ -83,6 +119,14 @@ mod tests {
         let place = Place::in_text("one\ntwo three\n", 8, 13);
         assert_eq!((place.line, place.column, place.byte), (2, 5, 8));
         assert_eq!((place.excerpt.as_str(), place.caret, place.width), ("two three", 4, 5));
+    }
+
+    #[test]
+    fn a_spot_is_shown_again_from_the_source() {
+        let text = "one\r\ntwo three\r\nfour";
+        let first = Place::in_text("one\r\ntwo three", 9, 14);
+        let again = Place::read_again(&mut io::Cursor::new(text), first.spot(), 5).unwrap();
+        assert_eq!(again, first);
     }
 
     #[test]

@@ -1,0 +1,1 @@
+//! How a contour is cut: its lead-in, overcut, tabs and passes.

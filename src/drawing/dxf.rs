@@ -1,0 +1,1 @@
+//! DXF: drawings read into contours, and paths written as drawings.

@@ -1,0 +1,1 @@
+//! A curve cut into lines or pairs of tangent arcs that stay within a tolerance of it.

@@ -1,0 +1,1 @@
+//! Outlines at a distance: the wire beside the contour it cuts.
