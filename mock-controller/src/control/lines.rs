@@ -9,7 +9,7 @@
 //! As in the other dialects `%` is the end if a line has come since the link opened and since the last end.
 //!
 //! Choices where the manuals are silent: the first line is discarded by label skip `auto` only if it is no line of words;
-//! CR ends a line as LF does, and empty lines are nothing.
+//! CR ends a line as LF does, and empty lines are nothing. Comments take no room in the buffer.
 
 use super::reader::Read;
 use super::settings::{LabelSkip, Torn};
@@ -28,6 +28,8 @@ pub(crate) struct LineReader {
     calls: bool,
     /// What is pending was kept from a link that closed.
     kept: bool,
+    /// Inside a comment, until this.
+    comment: Option<u8>,
     place: u64,
     torn: u64,
     skipped: u64,
@@ -54,6 +56,7 @@ impl LineReader {
             lines_on_link: 0,
             calls: false,
             kept: false,
+            comment: None,
             place: 1,
             torn: 0,
             skipped: 0,
@@ -112,6 +115,7 @@ impl LineReader {
     fn clear(&mut self, text: &mut Text) {
         self.pending.clear();
         self.kept = false;
+        self.comment = None;
         self.characters = 0;
         text.break_line();
         self.state = first_state(self.label_skip);
@@ -158,13 +162,36 @@ impl LineReader {
             (State::Label | State::Body, _) => {}
         }
         self.pending.push(c);
-        if c == b'\n' { self.line(text, observer) } else { Read::Nothing }
+        if c == b'\n' {
+            return self.line(text, observer);
+        }
+        if self.pending.len() > LINE_MAX {
+            self.state = State::Dead;
+            return Read::Malformed(format!("line {}: more than {LINE_MAX} characters", self.place));
+        }
+        self.pass_comment(c);
+        Read::Nothing
+    }
+
+    /// A comment is read past and takes no room in the buffer.
+    fn pass_comment(&mut self, c: u8) {
+        let inside = self.comment;
+        match (inside, c) {
+            (None, b'(') => self.comment = Some(b')'),
+            (None, b';') => self.comment = Some(b'\n'),
+            (Some(until), _) if c == until => self.comment = None,
+            _ => {}
+        }
+        if inside.is_some() || self.comment.is_some() {
+            self.characters -= 1;
+        }
     }
 
     fn percent(&mut self, text: &mut Text) -> Read {
         let ends = self.lines_in_program > 0 && self.lines_on_link > 0;
         self.pending.clear();
         self.kept = false;
+        self.comment = None;
         self.characters = 0;
         self.state = State::Percent { ends };
         if !ends {
@@ -182,6 +209,7 @@ impl LineReader {
         let ends_line = written.ends_with('\n');
         self.place += u64::from(ends_line);
         self.kept = false;
+        self.comment = None;
         let skips = is_label
             && match self.label_skip {
                 LabelSkip::Auto => parsed.is_err(),
@@ -201,7 +229,8 @@ impl LineReader {
                 text.put(&self.pending, observer);
                 self.pending.clear();
                 if line.words.is_empty() {
-                    // A line without words is no program yet: what follows may still be the label.
+                    // A line without words is no program yet: what follows may still be the label. It takes no room.
+                    self.characters = 0;
                     self.state = if is_label { State::Label } else { State::Body };
                     return Read::Nothing;
                 }
@@ -247,6 +276,9 @@ fn first_state(label_skip: LabelSkip) -> State {
 fn is_blank(text: &[u8]) -> bool {
     text.iter().all(u8::is_ascii_whitespace)
 }
+
+/// A line of more characters, comments included, is no line. A guess; it bounds the memory.
+const LINE_MAX: usize = 65_536;
 
 const DC2: u8 = 0x12;
 const DC4: u8 = 0x14;

@@ -190,8 +190,13 @@ impl Reader {
             State::Block { kept } => self.block(c, kept, text, observer),
             State::Comment { until } => {
                 self.pending.push(c);
-                if c == until || c == b'\n' {
+                // It is read past and takes no room.
+                self.characters = self.characters.saturating_sub(1);
+                let ends = c == until || c == b'\n';
+                if ends || self.pending.len() >= PIECE {
                     self.accept(text, observer);
+                }
+                if ends {
                     self.state = State::Between;
                 }
                 Read::Nothing
@@ -309,7 +314,11 @@ impl Reader {
         }
         self.pending.push(c);
         match c.to_ascii_uppercase() {
-            b'\n' => self.accept(text, observer),
+            b'\n' => {
+                self.accept(text, observer);
+                // Line ends in a row take the room of one.
+                self.characters = 1;
+            }
             space if space.is_ascii_whitespace() => {}
             b'D' => self.state = State::Stop,
             b'E' => {
@@ -317,8 +326,8 @@ impl Reader {
                 self.state = State::Tail;
                 return self.end(text);
             }
-            b';' => self.state = State::Comment { until: b'\n' },
-            b'(' => self.state = State::Comment { until: b')' },
+            b';' => self.comment(b'\n'),
+            b'(' => self.comment(b')'),
             _ => {
                 self.after_end = false;
                 self.state = State::Block { kept: false };
@@ -326,6 +335,11 @@ impl Reader {
             }
         }
         Read::Nothing
+    }
+
+    fn comment(&mut self, until: u8) {
+        self.characters = self.characters.saturating_sub(1);
+        self.state = State::Comment { until };
     }
 
     fn block(&mut self, c: u8, kept: bool, text: &mut Text, observer: &mut impl Observer) -> Read {
@@ -418,6 +432,9 @@ impl Reader {
         self.characters = keep;
     }
 }
+
+/// A comment is digested in pieces: it may be of any length.
+const PIECE: usize = 4096;
 
 const DC2: u8 = 0x12;
 const DC4: u8 = 0x14;

@@ -8,7 +8,8 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use mock_controller::{
-    ArcCentre, Controller, Dialect, GcodeSettings, Model, Report, Settings, SettingsError, Torn, UnitWithoutPoint,
+    ArcCentre, Controller, Dialect, GcodeSettings, Model, Report, Settings, SettingsError, Torn,
+    UnitWithoutPoint,
 };
 
 use crate::sender::{HOUR, Sender, run, sha256};

@@ -10,6 +10,7 @@ mod flow;
 mod four_b;
 mod gcode;
 mod lines;
+mod quiet;
 mod sender;
 mod taper;
 mod torn;
