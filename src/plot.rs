@@ -135,15 +135,22 @@ impl Plot {
             | Act::Comment(_)
             | Act::Header(_) => {}
         }
-        let Self { contours, cuts, .. } = self;
-        contours.see(motion, Default::default(), Default::default(), &mut |run| cuts.draw(&run));
+        if let (Act::Move { travel: Travel::Cut, element, .. }, Some(simulation), Some(block)) =
+            (&motion.act, &mut self.simulation, block)
+        {
+            simulation.see(block, element, motion.block)?;
+        }
+        let Self { contours, cuts, simulation, .. } = self;
+        contours.see(motion, Default::default(), Default::default(), &mut |run| {
+            cuts.draw(&run);
+            if let Some(simulation) = simulation {
+                simulation.end_run();
+            }
+        });
         if let Act::Move { travel: Travel::Cut, element, .. } = &motion.act {
             // The cut with which a chain is given up is not among those handed over.
             if contours.is_given_up() {
                 cuts.contour(element, motion.block, left(element));
-            }
-            if let (Some(simulation), Some(block)) = (&mut self.simulation, block) {
-                simulation.see(block, element, motion.block)?;
             }
         }
         Ok(())
@@ -247,6 +254,7 @@ impl Cuts {
                 for held in ring {
                     self.contour(&held.element, held.block, left(&held.element) * outside);
                 }
+                self.nominal.end_run();
             }
             // Without a ring in its chain a cut is what is to be cut.
             Run::Rest { held, rings: 0, .. } | Run::TooLong(held) => {
