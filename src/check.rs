@@ -23,8 +23,8 @@ mod models;
 mod radii;
 mod restart;
 mod tangency;
-mod taper;
 mod tape;
+mod taper;
 mod travel;
 
 use std::borrow::Cow;

@@ -15,10 +15,12 @@ mod check;
 mod connection;
 #[cfg(feature = "demo")]
 mod demo;
+mod dialects;
 mod failure;
 mod feeding;
 mod generate;
 mod jobs;
+mod kind;
 mod machines;
 mod motions;
 mod plot;

@@ -345,9 +345,8 @@ impl Page {
         let height = Class::Label.style().letters;
         for (mark, text, away) in numbers.apart(height, self.pen) {
             let nudge = [mark.aside.x * away, mark.aside.y * away - height / 2.0];
-            self.sketch.draw(
-                Shape::text(Class::Label, [mark.at.x, mark.at.y], Align::Centre, text).nudged(nudge),
-            );
+            self.sketch
+                .draw(Shape::text(Class::Label, [mark.at.x, mark.at.y], Align::Centre, text).nudged(nudge));
         }
     }
 

@@ -184,9 +184,8 @@ impl Profile {
     /// Takes over every key the text gives; returns those it does not.
     fn apply(&mut self, text: &str) -> Result<Vec<&'static str>, KeyError> {
         let document = Document::parse(text)?;
-        let sections = document.sections([
-            "machine", "link", "protocol", "tape", "control", "travel", "taper",
-        ])?;
+        let sections =
+            document.sections(["machine", "link", "protocol", "tape", "control", "travel", "taper"])?;
         let [machine, link, protocol, tape, control, travel, taper] = &sections;
         let mut assumed = Vec::new();
         let mut given = |key: &'static str, is_given: bool| {

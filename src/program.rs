@@ -16,8 +16,10 @@ use crate::rounding::Made;
 /// A line of program text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Line {
-    /// A block.
-    Block(Block),
+    /// A block; the 3B block it is, where the program is 3B or 4B.
+    Block(Option<Block>),
+    /// A comment, a program number, a header: sent, but not counted as a block.
+    Remark,
     /// `D`: the control pauses and goes on. Not counted as a block.
     Pause,
     /// `DD` or `E`: the control ends the program. Not counted as a block.
@@ -70,7 +72,7 @@ impl Program for Generated {
     fn pull(&mut self, text: &mut Vec<u8>) -> Result<Option<Line>, ProgramError> {
         if let Some(made) = self.blocks.next() {
             self.style.write(&made.block, text);
-            return Ok(Some(Line::Block(made.block)));
+            return Ok(Some(Line::Block(Some(made.block))));
         }
         if self.stop_word.is_empty() {
             return Ok(None);
@@ -98,7 +100,7 @@ impl<R: BufRead + Send> Program for Read<R> {
         Ok(match self.reader.next_item()? {
             Some(Item::Block(block)) => {
                 text.extend_from_slice(self.reader.text());
-                Some(Line::Block(block))
+                Some(Line::Block(Some(block)))
             }
             Some(Item::StopWord(word)) => {
                 text.extend_from_slice(word.as_bytes());
@@ -155,7 +157,7 @@ impl Numbered {
     pub fn goes_out_from(&self, first: u64) -> bool {
         match self.line {
             Line::Block(_) => self.block >= first,
-            Line::Pause | Line::End => self.block + 1 >= first,
+            Line::Remark | Line::Pause | Line::End => self.block + 1 >= first,
         }
     }
 }
@@ -192,7 +194,7 @@ impl Segments {
         self.hasher.update(text);
         self.hasher.update(b"\n");
         match line {
-            Line::Pause | Line::End => None,
+            Line::Remark | Line::Pause | Line::End => None,
             Line::Block(_) => {
                 self.blocks += 1;
                 ends_segment(self.blocks).then(|| self.cut())
@@ -251,7 +253,7 @@ mod tests {
 
     #[test]
     fn one_changed_character_changes_every_value_after_it() {
-        let block = Line::Block(Block::line(crate::units::Position::new(1, 2)));
+        let block = Line::Block(Some(Block::line(crate::units::Position::new(1, 2))));
         let values = |changed: usize| -> Vec<Segment> {
             let mut segments = Segments::default();
             (1..=64).filter_map(|n| segments.add(if n == changed { b"C" } else { b"B" }, block)).collect()

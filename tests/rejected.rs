@@ -138,7 +138,12 @@ fn standard_input_is_checked_as_a_file_is() {
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program under test runs");
-    child.stdin.take().expect("a pipe").write_all(b"B9900B0B9900GXL1\nB9900B0B39600GYNR1\n").expect("written");
+    child
+        .stdin
+        .take()
+        .expect("a pipe")
+        .write_all(b"B9900B0B9900GXL1\nB9900B0B39600GYNR1\n")
+        .expect("written");
     let output = child.wait_with_output().expect("it ends");
     let said = String::from_utf8(output.stderr).expect("text");
     assert_eq!(output.status.code(), Some(8));

@@ -3,8 +3,8 @@
 //! A cut that comes back within 3 µm of a node has closed ([`super::contours`]). One that ends a little way off a node it
 //! passed long before was meant to close; one that ends far from all of them is open, which a parting cut may be.
 
-use super::contours::{CLOSED_MM, Held, Run};
 use super::Finding;
+use super::contours::{CLOSED_MM, Held, Run};
 
 /// A gap beyond this, mm, is no gap but an open cut.
 const GAP_MM: f64 = 1.0;

@@ -185,9 +185,7 @@ fn comes_apart(first: &Element, second: &Element) -> bool {
         })
     };
     match (apart(second.start()), apart(second.end())) {
-        (Some(before), Some(after)) => {
-            before * after < 0.0 && before.abs().min(after.abs()) > DEPTH_LEAST
-        }
+        (Some(before), Some(after)) => before * after < 0.0 && before.abs().min(after.abs()) > DEPTH_LEAST,
         _ => false,
     }
 }
@@ -313,8 +311,9 @@ impl Crossing {
 fn crossing(at: Point, block: u64, spot: Spot, earlier: Option<u64>) -> Finding {
     let whom = earlier.map_or_else(|| "itself".to_owned(), |earlier| format!("block {earlier}"));
     let message = format!("the path crosses {whom} at {:.3}, {:.3} mm", at.x, at.y);
-    Finding::error("crossing", spot, block, message)
-        .help("look at it with `dripfeed plot`; a loop in a corner means an offset larger than the corner allows")
+    Finding::error("crossing", spot, block, message).help(
+        "look at it with `dripfeed plot`; a loop in a corner means an offset larger than the corner allows",
+    )
 }
 
 #[cfg(test)]

@@ -81,13 +81,7 @@ impl Modal {
         }
     }
 
-    fn move_(
-        &mut self,
-        travel: Travel,
-        element: &Element,
-        motion: &Motion,
-        tell: &mut impl FnMut(Finding),
-    ) {
+    fn move_(&mut self, travel: Travel, element: &Element, motion: &Motion, tell: &mut impl FnMut(Finding)) {
         if self.has_ended && !std::mem::replace(&mut self.is_after_end_told, true) {
             tell(
                 Finding::error(

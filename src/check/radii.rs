@@ -12,14 +12,20 @@ const APART_MM: f64 = 0.003;
 
 pub(super) fn see(motion: &Motion, tell: &mut impl FnMut(Finding)) {
     let Act::Move { element, upper, .. } = &motion.act else { return };
-    for (element, which) in std::iter::once((element, "")).chain(upper.iter().map(|u| (u, " of the upper end")))
+    for (element, which) in
+        std::iter::once((element, "")).chain(upper.iter().map(|u| (u, " of the upper end")))
     {
         let Element::Arc { start, end, centre, .. } = *element else { continue };
         let (from, to) = ((start - centre).norm(), (end - centre).norm());
         if from == 0.0 && to == 0.0 {
             tell(
-                Finding::error("arc-no-radius", motion.spot, motion.block, format!("the arc{which} has no radius"))
-                    .help("check the centre: I and J are seen from the arc's start"),
+                Finding::error(
+                    "arc-no-radius",
+                    motion.spot,
+                    motion.block,
+                    format!("the arc{which} has no radius"),
+                )
+                .help("check the centre: I and J are seen from the arc's start"),
             );
         } else if (from - to).abs() > APART_MM {
             tell(

@@ -56,8 +56,7 @@ fn codes(acts: &[Act]) -> Vec<&'static str> {
 }
 
 /// A square of 10 mm with its lead-in from the left, counter-clockwise, from its lower left corner.
-const SQUARE: [(f64, f64); 6] =
-    [(-5.0, 0.0), (0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)];
+const SQUARE: [(f64, f64); 6] = [(-5.0, 0.0), (0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)];
 
 #[test]
 fn a_square_in_order_has_no_finding() {
@@ -127,7 +126,8 @@ fn a_path_that_crosses_itself_is_told_with_both_blocks() {
 
 #[test]
 fn a_lead_in_is_judged_by_the_side_that_is_kept() {
-    let keeping = |kept| found(Settings { kept: Some(kept), ..Settings::default() }, &ended(&through(&SQUARE)));
+    let keeping =
+        |kept| found(Settings { kept: Some(kept), ..Settings::default() }, &ended(&through(&SQUARE)));
     assert_eq!(keeping(Kept::Inside), []);
     assert_eq!(keeping(Kept::Outside), [("lead-in-through-part", 1)]);
     for (side, expected) in [(Side::Right, vec![]), (Side::Left, vec![("lead-in-through-part", 2)])] {
@@ -170,11 +170,15 @@ fn modes_left_on_and_words_out_of_place_are_told() {
     assert_eq!(found(Settings::default(), &with(tilted(2.0))), [("taper-left-on", 1)]);
     assert_eq!(found(Settings::default(), &with(tilted(0.0))), []);
     assert_eq!(found(Settings::default(), &with(Act::Unknown(b"Q7"[..].into()))), [("unknown-word", 1)]);
-    let after = [ended(&square), vec![line((0.0, 0.0), (-1.0, 0.0)), line((-1.0, 0.0), (-2.0, 0.0))]].concat();
+    let after =
+        [ended(&square), vec![line((0.0, 0.0), (-1.0, 0.0)), line((-1.0, 0.0), (-2.0, 0.0))]].concat();
     assert_eq!(found(Settings::default(), &after), [("after-end", 7), ("contour-open", 8)]);
     let round = moved(Way::Cut, arc((0.0, 0.0), (0.0, 0.0), (5.0, 0.0), Sense::Clockwise), None);
     assert_eq!(
-        found(Settings::default(), &ended(&[on.clone(), round, Act::Offset(Offset::Off), line((0.0, 0.0), (-5.0, 0.0))])),
+        found(
+            Settings::default(),
+            &ended(&[on.clone(), round, Act::Offset(Offset::Off), line((0.0, 0.0), (-5.0, 0.0))])
+        ),
         [("offset-on-arc", 2)]
     );
     let away = [vec![on], square, vec![rapid((0.0, 0.0), (9.0, 40.0)), Act::Offset(Offset::Off)]].concat();
@@ -184,8 +188,11 @@ fn modes_left_on_and_words_out_of_place_are_told() {
 #[test]
 fn a_taper_beyond_the_machine_is_told() {
     let tilted = |angle, most| {
-        let acts =
-            [vec![Act::Taper(Taper::On { side: Side::Left, angle })], through(&SQUARE), vec![Act::Taper(Taper::Off)]];
+        let acts = [
+            vec![Act::Taper(Taper::On { side: Side::Left, angle })],
+            through(&SQUARE),
+            vec![Act::Taper(Taper::Off)],
+        ];
         found(Settings { taper_max: most, ..Settings::default() }, &ended(&acts.concat()))
     };
     assert_eq!(tilted(4.0, Some(4.0)), []);

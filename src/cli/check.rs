@@ -17,10 +17,11 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::failure::{Exit, Failure};
-use super::motions::Motions;
-use super::source::Kind;
+use super::kind::Kind;
+use super::motions::{Motions, OfPart, Reading};
 use super::{machines, print, print_json};
 use crate::check::{Check, Finding, Format, Kept, Report, Settings, Severity};
+use crate::interpolator::Model;
 use crate::profile::Profile;
 
 /// Check a program: everything wrong with it in one run, nothing is sent
@@ -29,9 +30,8 @@ pub(super) struct Options {
     /// A program, a part file, or - for standard input
     #[arg(value_name = "IN")]
     input: String,
-    /// What IN is [default: by its name, then by its content; needed for -]
-    #[arg(long, value_name = "KIND")]
-    from: Option<Kind>,
+    #[command(flatten)]
+    reading: Reading,
     /// The machine to check against: a built-in profile or a file [default: generic-iso]
     #[arg(long, value_name = "NAME|FILE")]
     machine: Option<String>,
@@ -60,12 +60,10 @@ enum Side {
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let profile = match &options.machine {
         Some(name) => machines::load(name)?.profile,
-        None => {
-            Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?
-        }
+        None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
-    let mut motions = Motions::open(&options.input, options.from)?;
-    let report = check(&mut motions, options, profile);
+    let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, Model::Rotated)?;
+    let report = check(&mut motions, options, profile)?;
     if options.json {
         print_json(&as_json(&report, options))?;
     } else {
@@ -84,9 +82,13 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     }
 }
 
-fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Report {
+fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<Report, Failure> {
     let mut check = Check::new(Settings {
-        format: Format::ThreeB,
+        format: match motions.kind {
+            Kind::FourB => Format::FourB,
+            Kind::Gcode => Format::GCode,
+            Kind::ThreeB | Kind::Dxf | Kind::Part => Format::ThreeB,
+        },
         travel: profile.travel,
         taper_max: profile.taper_max_degrees,
         kept: options.kept.map(|side| match side {
@@ -100,8 +102,8 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Report {
     while let Some(motion) = motions.next() {
         match motion {
             Ok(motion) => {
-                check.see_text(motions.text(), motion.block, motion.spot);
-                check.see(&motion, motions.block());
+                check.see_text(motions.text(&motion), motion.block, motion.spot);
+                check.see(&motion, motions.block().as_ref());
             }
             Err(error) => {
                 if !(check.see_error(&error) && motions.go_on_behind(&error)) {
@@ -110,7 +112,9 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Report {
             }
         }
     }
-    check.finish()
+    // G-code goes out line by line as it stands.
+    motions.lines(|line, block| check.see_text(line.bytes, block, line.spot(0)))?;
+    Ok(check.finish())
 }
 
 fn rendered(finding: &Finding, motions: &mut Motions) -> String {

@@ -1,194 +1,211 @@
-//! IN of `check` and `plot`: a program as motions, with what was read for each of them.
+//! IN of `check`, `plot` and `convert`: a program, a part or a drawing as motions, with what was read for each of them.
 //!
-//! Motions come one at a time. A file can be read on behind something that cannot be read: at the next line, or behind
-//! the next block where blocks run together. What comes from standard input or a FIFO is put aside first, since places
-//! are shown by reading again.
+//! Motions come one at a time; only a drawing is held. A program can be read on behind something that cannot be read: at
+//! the next line, or behind the next block where blocks run together. What comes from standard input or a FIFO is put
+//! aside first, since places are shown by reading again, and a G-code program may call what stands behind its end.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom};
+use std::io::{self, BufReader, Read, Seek as _, SeekFrom};
 use std::path::Path;
 
-use super::failure::Failure;
-use super::source::{self, Kind};
+use clap::Args;
+
+use super::failure::{Exit, Failure};
+use super::kind::Kind;
+use super::source;
 use crate::formats::ReadError;
-use crate::formats::three_b::read::{Item, Reader};
-use crate::formats::three_b::{Block, Motion as Instruction};
-use crate::geometry::{Element, Point};
+use crate::formats::gcode::{self, Dialect};
+use crate::formats::lines::Line;
+use crate::formats::three_b::{self, Block};
 use crate::interpolator::Model;
-use crate::motion::{Act, Motion, Stop, Travel};
-use crate::part::{Part, Prepared, StopWord};
+use crate::motion::{Act, Motion};
+use crate::part::{Part, Prepared};
 use crate::place::{Place, Spot};
-use crate::rounding::Made;
-use crate::units::Position;
+use crate::program::{Generated, Program};
+
+/// How IN is to be read.
+#[derive(Args, Clone, Debug, Default)]
+pub(super) struct Reading {
+    /// What IN is [default: by its name, then by its content; needed for -]
+    #[arg(long, value_name = "KIND")]
+    pub(super) from: Option<Kind>,
+    /// The control a G-code program is for: a built-in dialect or a dialect file [default: generic]
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(super) dialect: Option<String>,
+}
+
+/// What of a part is wanted.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum OfPart {
+    /// The 3B blocks made of it.
+    Blocks,
+    /// Its elements as they are designed.
+    Elements,
+}
 
 /// A program as motions.
 pub(super) struct Motions {
     /// As it was named.
     pub(super) name: String,
+    /// What it is.
+    pub(super) kind: Kind,
     source: Source,
-    stands: Position,
-    blocks: u64,
-    block: Option<Block>,
-    text: Vec<u8>,
+    part: Option<Part>,
+    /// Its text, to look up places in.
+    file: Option<File>,
 }
 
 enum Source {
-    File { file: File, reader: Box<Reader<BufReader<File>>>, base: Spot },
-    Part { prepared: Box<Prepared>, made: Box<dyn Iterator<Item = Made> + Send>, end: StopWord },
+    /// 3B or 4B, read or generated.
+    Blocks {
+        motions: Box<three_b::motions::Motions<Box<dyn Read>>>,
+        /// Where the reader began, when it has gone on behind an error.
+        base: Spot,
+    },
+    Gcode {
+        motions: Box<gcode::Motions<BufReader<File>>>,
+        dialect: Box<Dialect>,
+        /// The byte of the last error that was gone on behind.
+        failed_at: Option<u64>,
+    },
+    Made(Box<dyn Iterator<Item = Motion>>),
 }
 
 impl Motions {
-    /// Opens what a word on the command line stands for.
-    pub(super) fn open(word: &str, from: Option<Kind>) -> Result<Self, Failure> {
-        let kind = source::kind(word, from)?;
+    /// Opens what a word on the command line stands for; blocks run as on a control of the model.
+    pub(super) fn open(
+        word: &str,
+        reading: &Reading,
+        of_part: OfPart,
+        model: Model,
+    ) -> Result<Self, Failure> {
+        let kind = Kind::asked(word, reading.from)?;
+        if reading.dialect.is_some() && kind != Kind::Gcode {
+            let message = format!("--dialect goes with G-code, and {word} is {}", kind.title());
+            return Err(Failure::new(Exit::Usage, message).help("leave it out, or say --from gcode"));
+        }
+        let (mut part, mut file) = (None, None);
+        let blocks = |motions| Source::Blocks { motions: Box::new(motions), base: Spot::default() };
         let source = match kind {
             Kind::Part => {
                 let prepared = source::part_file(word)?.0.part.prepare();
-                let prepared = Box::new(prepared.map_err(|error| Failure::gear(&error))?);
-                let made = prepared.blocks();
-                let end = prepared.part().stop_word;
-                Source::Part { prepared, made, end }
+                let prepared = prepared.map_err(|error| Failure::gear(&error))?;
+                part = Some(prepared.part().clone());
+                match of_part {
+                    OfPart::Blocks => {
+                        let text: Box<dyn Read> = Box::new(Text::of(&prepared));
+                        blocks(three_b::motions::Motions::of_three_b(text, model))
+                    }
+                    OfPart::Elements => Source::Made(Box::new(prepared.motions())),
+                }
             }
-            Kind::ThreeB => {
+            Kind::Dxf => {
+                let message = format!("{word} is a drawing, and drawings are not read yet");
+                return Err(Failure::new(Exit::Usage, message));
+            }
+            Kind::ThreeB | Kind::FourB | Kind::Gcode => {
                 let failed = |error: io::Error| source::unreadable(word, &error);
                 let is_file = word != "-" && Path::new(word).is_file();
-                let file = if is_file { File::open(word) } else { put_aside(word) }.map_err(failed)?;
-                let again = file.try_clone().map_err(failed)?;
-                let reader = Box::new(Reader::new(BufReader::with_capacity(BUFFER, again)));
-                Source::File { file, reader, base: Spot::default() }
+                let opened = if is_file { File::open(word) } else { put_aside(word) }.map_err(failed)?;
+                let text = opened.try_clone().map_err(failed)?;
+                file = Some(opened);
+                let text = BufReader::with_capacity(BUFFER, text);
+                match kind {
+                    Kind::FourB => blocks(three_b::motions::Motions::of_four_b(Box::new(text), model)),
+                    Kind::Gcode => {
+                        let dialect = super::dialects::load(reading.dialect.as_deref())?;
+                        let motions = gcode::Motions::of_file(text, dialect.clone())
+                            .map_err(|error| Failure::read(word, error))?;
+                        Source::Gcode {
+                            motions: Box::new(motions),
+                            dialect: Box::new(dialect),
+                            failed_at: None,
+                        }
+                    }
+                    _ => blocks(three_b::motions::Motions::of_three_b(Box::new(text), model)),
+                }
             }
         };
         let name = if word == "-" { "standard input".to_owned() } else { word.to_owned() };
-        Ok(Self {
-            name,
-            source,
-            stands: Position::default(),
-            blocks: 0,
-            block: None,
-            text: Vec::new(),
-        })
+        Ok(Self { name, kind, source, part, file })
     }
 
     /// The 3B block the last motion came from.
-    pub(super) fn block(&self) -> Option<&Block> {
-        self.block.as_ref()
+    pub(super) fn block(&self) -> Option<Block> {
+        match &self.source {
+            Source::Blocks { motions, .. } => motions.last_block(),
+            Source::Gcode { .. } | Source::Made(_) => None,
+        }
     }
 
-    /// The text of the last motion as it goes to the control.
-    pub(super) fn text(&self) -> &[u8] {
-        &self.text
+    /// The text of a motion just read as it goes to the control; G-code goes line by line, see [`Motions::lines`].
+    pub(super) fn text(&self, motion: &Motion) -> &[u8] {
+        match (&self.source, &motion.act) {
+            (Source::Blocks { motions, .. }, Act::Move { .. } | Act::Stop(_)) => motions.text(),
+            _ => &[],
+        }
     }
 
     /// The part the motions are made from.
     pub(super) fn part(&self) -> Option<&Part> {
+        self.part.as_ref()
+    }
+
+    /// The dialect a G-code program is read in.
+    pub(super) fn dialect(&self) -> Option<&Dialect> {
         match &self.source {
-            Source::Part { prepared, .. } => Some(prepared.part()),
-            Source::File { .. } => None,
+            Source::Gcode { dialect, .. } => Some(dialect),
+            _ => None,
         }
     }
 
-    /// A spot with the text that stands there; none where there is no text. A width of 0 means the whole block.
-    pub(super) fn place(&mut self, spot: Spot, width: usize) -> Option<Place> {
-        let Source::File { file, .. } = &mut self.source else { return None };
-        if spot.line == 0 {
-            return None;
+    /// Shows every line of a G-code program that can be read, with the number of its block.
+    pub(super) fn lines(&mut self, mut show: impl FnMut(Line<'_>, u64)) -> Result<(), Failure> {
+        let (Source::Gcode { dialect, .. }, Some(file)) = (&self.source, &mut self.file) else {
+            return Ok(());
+        };
+        let failed = |error: io::Error| source::unreadable(&self.name, &error);
+        file.rewind().map_err(failed)?;
+        let text = BufReader::with_capacity(BUFFER, file.try_clone().map_err(failed)?);
+        let mut blocks = gcode::Blocks::new(text, dialect);
+        // What cannot be read has been found by whoever read the motions.
+        while let Ok(Some(block)) = blocks.next_block() {
+            show(block.line, block.number);
         }
-        // Reader and file share a position; the places are asked for when all has been read.
+        Ok(())
+    }
+
+    /// A spot with the text that stands there; none where there is no text. A width of 0 means the whole block.
+    ///
+    /// To be asked when all has been read: the file and its reader share a position.
+    pub(super) fn place(&mut self, spot: Spot, width: usize) -> Option<Place> {
+        let file = self.file.as_mut().filter(|_| spot.line > 0)?;
         let mut place = Place::read_again(file, spot, width.max(1)).ok()?;
         if width == 0 {
-            place.width = block_width(place.excerpt.as_bytes().get(place.caret..)?);
+            let text = place.excerpt.as_bytes().get(place.caret..)?;
+            place.width =
+                if self.kind == Kind::Gcode { text.trim_ascii_end().len().max(1) } else { block_width(text) };
         }
         Some(place)
     }
 
     /// Reads on behind an error; false where that cannot be.
     pub(super) fn go_on_behind(&mut self, error: &ReadError) -> bool {
-        let (ReadError::Program { place, .. }, Source::File { file, reader, base }) =
-            (error, &mut self.source)
-        else {
-            return false;
-        };
-        self.block = None;
-        let Ok(next) = next_start(file, place.spot()) else { return false };
-        let Ok(again) = file.try_clone() else { return false };
-        *base = next;
-        **reader = Reader::new(BufReader::with_capacity(BUFFER, again));
-        true
-    }
-
-    fn next_from_file(&mut self) -> Option<Result<Motion, ReadError>> {
-        let Source::File { reader, base, .. } = &mut self.source else { return None };
-        self.text.clear();
-        let item = match reader.next_item() {
-            Ok(item) => item?,
-            Err(ReadError::Program { message, place, help }) => {
-                let spot = behind(*base, place.spot());
-                let place = Place { line: spot.line, column: spot.column, byte: spot.byte, ..place };
-                return Some(Err(ReadError::Program { message, place, help }));
+        let ReadError::Program { place, .. } = error else { return false };
+        match (&mut self.source, &mut self.file) {
+            (Source::Blocks { motions, base }, Some(file)) => {
+                let Ok(next) = next_start(file, place.spot()) else { return false };
+                let Ok(again) = file.try_clone() else { return false };
+                *base = next;
+                motions.go_on_from(Box::new(BufReader::with_capacity(BUFFER, again)));
+                true
             }
-            Err(error) => return Some(Err(error)),
-        };
-        let spot = behind(*base, reader.spot());
-        match item {
-            Item::Block(block) => {
-                self.text.extend_from_slice(reader.text());
-                Some(Ok(self.motion(block, spot)))
+            // A line that is read wrong again where it was before is the end.
+            (Source::Gcode { motions, failed_at, .. }, _) => {
+                failed_at.replace(place.byte) != Some(place.byte) && motions.go_on()
             }
-            Item::StopWord(word) => {
-                self.text.extend_from_slice(word.as_bytes());
-                Some(Ok(self.stop(word, spot)))
-            }
+            _ => false,
         }
-    }
-
-    fn next_from_part(&mut self) -> Option<Result<Motion, ReadError>> {
-        let Source::Part { prepared, made, end } = &mut self.source else { return None };
-        self.text.clear();
-        if let Some(made) = made.next() {
-            prepared.part().style.write(&made.block, &mut self.text);
-            return Some(Ok(self.motion(made.block, Spot::default())));
-        }
-        let word = std::mem::replace(end, StopWord::None).text();
-        if word.is_empty() {
-            return None;
-        }
-        self.text.extend_from_slice(word.as_bytes());
-        Some(Ok(self.stop(word, Spot::default())))
-    }
-
-    fn stop(&mut self, word: &str, spot: Spot) -> Motion {
-        self.block = None;
-        let stop = if word == "D" { Stop::Pause } else { Stop::End };
-        Motion { act: Act::Stop(stop), block: self.blocks, spot }
-    }
-
-    fn motion(&mut self, block: Block, spot: Spot) -> Motion {
-        self.blocks += 1;
-        self.block = Some(block);
-        let start = self.stands;
-        // The reader has seen that the block ends.
-        let way = Model::Rotated.displacement(&block).unwrap_or_default();
-        self.stands += way;
-        let point = |p: Position| Point::new(p.x.millimetres(), p.y.millimetres());
-        let element = match block.motion {
-            Instruction::Line(_) => Element::Line { start: point(start), end: point(self.stands) },
-            Instruction::Arc(..) if block.j.0 == 0 => {
-                Element::Line { start: point(start), end: point(start) }
-            }
-            Instruction::Arc(sense, _) => {
-                // A full circle may end a few microns behind or before its start; it is a full circle all the same.
-                let radius = Position::default().distance_um(point(block.signed()));
-                let is_whole = block.j.0 as f64 > 3.0 * radius
-                    && start.distance_um(point(self.stands)) <= WHOLE_UM.min(0.1 * radius);
-                if is_whole {
-                    self.stands = start;
-                }
-                let centre = point(start - block.signed());
-                Element::Arc { start: point(start), end: point(self.stands), centre, sense }
-            }
-        };
-        let act = Act::Move { travel: Travel::Cut, element, upper: None, flag: None };
-        Motion { act, block: self.blocks, spot }
     }
 }
 
@@ -196,10 +213,52 @@ impl Iterator for Motions {
     type Item = Result<Motion, ReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        match self.source {
-            Source::File { .. } => self.next_from_file(),
-            Source::Part { .. } => self.next_from_part(),
+        match &mut self.source {
+            Source::Blocks { motions, base } => Some(match motions.next()? {
+                // What is generated has no text to look places up in.
+                Ok(motion) if self.part.is_some() => Ok(Motion { spot: Spot::default(), ..motion }),
+                Ok(motion) => Ok(Motion { spot: behind(*base, motion.spot), ..motion }),
+                Err(ReadError::Program { message, place, help }) => {
+                    let spot = behind(*base, place.spot());
+                    let place = Place { line: spot.line, column: spot.column, byte: spot.byte, ..place };
+                    Err(ReadError::Program { message, place, help })
+                }
+                Err(error) => Err(error),
+            }),
+            Source::Gcode { motions, .. } => motions.next(),
+            Source::Made(motions) => motions.next().map(Ok),
         }
+    }
+}
+
+/// A generated program as text, made as it is read.
+struct Text {
+    program: Generated,
+    line: Vec<u8>,
+    at: usize,
+}
+
+impl Text {
+    fn of(prepared: &Prepared) -> Self {
+        Self { program: Generated::new(prepared), line: Vec::new(), at: 0 }
+    }
+}
+
+impl Read for Text {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.at == self.line.len() {
+            (self.line.clear(), self.at = 0);
+            while self.line.len() < buffer.len().min(BUFFER) {
+                match self.program.pull(&mut self.line).map_err(io::Error::other)? {
+                    Some(_) => self.line.push(b'\n'),
+                    None => break,
+                }
+            }
+        }
+        let count = buffer.len().min(self.line.len() - self.at);
+        buffer[..count].copy_from_slice(&self.line[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
     }
 }
 
@@ -258,8 +317,5 @@ fn put_aside(word: &str) -> io::Result<File> {
     file.rewind()?;
     Ok(file)
 }
-
-/// A full circle from any point, its J from geometry, ends so near its start, µm, whatever the model.
-const WHOLE_UM: f64 = 10.0;
 
 const BUFFER: usize = 1 << 17;

@@ -15,8 +15,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{Exit, Failure};
-use super::motions::Motions;
-use super::source::Kind;
+use super::motions::{Motions, OfPart, Reading};
 use super::{print, print_json};
 use crate::drawing::Extent;
 use crate::interpolator::Model;
@@ -31,9 +30,8 @@ pub(super) struct Options {
     /// Where the picture goes: .svg or .png; - for SVG on standard output
     #[arg(short, long, value_name = "OUT.svg|OUT.png")]
     output: PathBuf,
-    /// What IN is [default: by its name, then by its content; needed for -]
-    #[arg(long, value_name = "KIND")]
-    from: Option<Kind>,
+    #[command(flatten)]
+    reading: Reading,
     /// The wire's diameter; 0 draws no wire [default: 0.18]
     #[arg(long, value_name = "MM", value_parser = diameter)]
     wire: Option<f64>,
@@ -72,20 +70,18 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         let message = "the picture and its figures cannot both go to standard output";
         return Err(Failure::new(Exit::Usage, message).help("name a file with -o, or leave out --json"));
     }
-    let mut motions = Motions::open(&options.input, options.from)?;
-    let simulated = (!options.no_simulation).then(|| {
-        let named = options.interpolator.as_deref();
-        Model::ALL.into_iter().find(|model| Some(model.name()) == named).unwrap_or(Model::Rotated)
-    });
+    let named = options.interpolator.as_deref();
+    let model = Model::ALL.into_iter().find(|model| Some(model.name()) == named).unwrap_or(Model::Rotated);
+    let simulated = (!options.no_simulation).then_some(model);
+    let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, model)?;
     let wire = options.wire.or_else(|| kerf(&motions)).unwrap_or_else(|| {
         say!("the wire's diameter is not given: {WIRE_MM} mm is drawn (--wire MM)");
         WIRE_MM
     });
     let mut plot = Plot::new(What {
-        title: Path::new(&motions.name).file_name().map_or_else(
-            || motions.name.clone(),
-            |name| name.to_string_lossy().into_owned(),
-        ),
+        title: Path::new(&motions.name)
+            .file_name()
+            .map_or_else(|| motions.name.clone(), |name| name.to_string_lossy().into_owned()),
         wire: (wire > 0.0).then_some(wire),
         numbers: options.numbers,
         simulated,
@@ -94,7 +90,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     while let Some(motion) = motions.next() {
         let motion = motion.map_err(|error| Failure::read(&motions.name, error))?;
         blocks = motion.block;
-        plot.see(&motion, motions.block()).map_err(|fault| {
+        plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
             let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
             failure.help("simulate another model with --interpolator, or none with --no-simulation")
         })?;
@@ -153,8 +149,7 @@ fn kerf(motions: &Motions) -> Option<f64> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let failed =
-        |error| Failure::new(Exit::Ours, format!("cannot write {}: {error}", path.display()));
+    let failed = |error| Failure::new(Exit::Ours, format!("cannot write {}: {error}", path.display()));
     let mut file = std::fs::File::create(path).map_err(failed)?;
     file.write_all(bytes).and_then(|()| file.flush()).map_err(failed)
 }
@@ -194,7 +189,10 @@ fn account(plotted: &Plotted, blocks: u64, simulated: Option<Model>) -> String {
         ));
     }
     if plotted.thinned_um > 2.0 {
-        text.push_str(&format!("lines are drawn within {:.0} µm, to keep the picture small\n", plotted.thinned_um));
+        text.push_str(&format!(
+            "lines are drawn within {:.0} µm, to keep the picture small\n",
+            plotted.thinned_um
+        ));
     }
     if plotted.numbers_left_out > 0 {
         text.push_str(&format!("{} block numbers are left out for want of room\n", plotted.numbers_left_out));

@@ -24,7 +24,9 @@ pub(super) fn around(source: &Source, from_block: u64) -> Result<String, Failure
             Err(ProgramError::Read(error)) => return Err(Failure::read(&source.path, error)),
         };
         let (Line::Block(made), block) = (numbered.line, numbered.block) else { continue };
-        if block < from_block {
+        if let Some(made) = made
+            && block < from_block
+        {
             stands += model
                 .displacement(&made)
                 .map_err(|fault| Failure::new(Exit::Program, format!("block {block}: {fault}")))?;

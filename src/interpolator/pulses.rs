@@ -65,8 +65,7 @@ impl Model {
         let way = match (self, block.motion) {
             (Self::Exact, _) => Way::Exact { block: *block, target: Position::default(), travelled: 0 },
             (Self::Rotated | Self::Mirrored | Self::Strict, Motion::Line(quadrant)) => {
-                let x_leads =
-                    self == Self::Mirrored || matches!(quadrant, Quadrant::First | Quadrant::Third);
+                let x_leads = self == Self::Mirrored || matches!(quadrant, Quadrant::First | Quadrant::Third);
                 let (x, y) = ((block.x.0, (quadrant.signs().0, 0)), (block.y.0, (0, quadrant.signs().1)));
                 let ((lead, along), (other, aside)) = if x_leads { (x, y) } else { (y, x) };
                 Way::Line(Line { lead, other, along, aside, f: 0 })
@@ -178,12 +177,7 @@ impl Arc {
 }
 
 /// A step towards where the true curve is at the next micron of travel: of the two there may be, the one nearer to it.
-fn exact_step(
-    block: &Block,
-    target: &mut Position,
-    travelled: &mut i64,
-    at: Position,
-) -> Option<Step> {
+fn exact_step(block: &Block, target: &mut Position, travelled: &mut i64, at: Position) -> Option<Step> {
     while *target == at {
         if *travelled >= block.j.0 {
             return None;

@@ -170,7 +170,14 @@ const FINEST_UM: f64 = 0.8;
 
 impl Thinned {
     pub(super) fn new() -> Self {
-        Self { tolerance_um: FINEST_UM, runs: Vec::new(), seen: Seen::default(), kept: 0, current: None, last: None }
+        Self {
+            tolerance_um: FINEST_UM,
+            runs: Vec::new(),
+            seen: Seen::default(),
+            kept: 0,
+            current: None,
+            last: None,
+        }
     }
 
     /// How far what is kept may be from what was added, µm.
@@ -309,7 +316,10 @@ mod tests {
         let own = spiral(400_000).flat_map(|e| e.extent()).map(|p| [p.x, p.y]);
         let own = crate::drawing::Extent::of(own).unwrap();
         for (drawn, own) in [(extent.min, own.min), (extent.max, own.max)] {
-            assert!((drawn[0] - own[0]).abs() < 0.001 && (drawn[1] - own[1]).abs() < 0.001, "{drawn:?} {own:?}");
+            assert!(
+                (drawn[0] - own[0]).abs() < 0.001 && (drawn[1] - own[1]).abs() < 0.001,
+                "{drawn:?} {own:?}"
+            );
         }
     }
 

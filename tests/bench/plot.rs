@@ -28,10 +28,14 @@ fn main() {
     lines(&many_lines, 100_000);
     let svg = directory.path().join("out.svg");
     let png = directory.path().join("out.png");
-    for (name, file) in [("the paper's gear, 3800 turns", &many_turns), ("a gear of 140 000 teeth", &one_turn)] {
+    for (name, file) in
+        [("the paper's gear, 3800 turns", &many_turns), ("a gear of 140 000 teeth", &one_turn)]
+    {
         let blocks = count(file);
         for (out, kind) in [(&svg, "SVG"), (&png, "PNG")] {
-            for (words, how) in [(&[][..], "simulated cut on top"), (&["--no-simulation"][..], "program alone")] {
+            for (words, how) in
+                [(&[][..], "simulated cut on top"), (&["--no-simulation"][..], "program alone")]
+            {
                 let words = [&["plot", text(file), "--wire", "0.18", "-o", text(out)], words].concat();
                 row(&format!("`plot` {kind} of {name}, {blocks} blocks, {how}"), &words, Some(out));
             }
@@ -39,7 +43,11 @@ fn main() {
         row(&format!("`check` of {name}, {blocks} blocks"), &["check", text(file)], None);
     }
     let blocks = count(&many_lines);
-    row(&format!("`check` of one contour of {blocks} lines, self-crossing included"), &["check", text(&many_lines)], None);
+    row(
+        &format!("`check` of one contour of {blocks} lines, self-crossing included"),
+        &["check", text(&many_lines)],
+        None,
+    );
 }
 
 fn text(path: &Path) -> &str {

@@ -141,7 +141,10 @@ fn two_elements_meet_on_both_of_them() {
     // Dense sampling of one against the other's distance.
     let pairs = [
         (line((0.0, 0.0), (10.0, 3.0)), arc((9.0, 0.0), (1.0, 1.0), (5.0, 0.5), Sense::CounterClockwise)),
-        (arc((0.0, 0.0), (6.0, 0.0), (3.0, -1.0), Sense::Clockwise), arc((3.0, 3.0), (3.0, -3.0), (0.0, 0.0), Sense::Clockwise)),
+        (
+            arc((0.0, 0.0), (6.0, 0.0), (3.0, -1.0), Sense::Clockwise),
+            arc((3.0, 3.0), (3.0, -3.0), (0.0, 0.0), Sense::Clockwise),
+        ),
     ];
     for (a, b) in pairs {
         let points: Vec<Point> = meet::meet(&a, &b).into_iter().flatten().collect();
