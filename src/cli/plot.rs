@@ -21,7 +21,7 @@ use crate::drawing::Extent;
 use crate::interpolator::Model;
 use crate::plot::{Options as What, Plot, Plotted};
 
-/// Draw a program as SVG or PNG: contour, wire, lead-ins, rapid moves, and the cut pulse by pulse
+/// Draw a program as SVG or PNG: contour, wire, and the cut pulse by pulse
 #[derive(Args, Debug)]
 pub(super) struct Options {
     /// A program, a part file, or - for standard input
