@@ -230,6 +230,11 @@ impl Thinned {
         self.last = None;
     }
 
+    /// Lets go the run in work.
+    pub(super) fn forget_run(&mut self) {
+        (self.current, self.last) = (None, None);
+    }
+
     fn coarsen(&mut self) {
         self.tolerance_um *= 2.0;
         self.kept = 0;

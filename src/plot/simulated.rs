@@ -98,6 +98,11 @@ impl Simulation {
         Ok(())
     }
 
+    /// Lets go what has been drawn of the run in work: nothing was cut there.
+    pub(super) fn forget_run(&mut self) {
+        self.path.forget_run();
+    }
+
     /// Ends a run where a contour has closed.
     pub(super) fn end_run(&mut self) {
         self.path.end_run();
