@@ -25,6 +25,7 @@ mod machines;
 mod motions;
 mod plot;
 mod question;
+mod registers;
 mod resume;
 mod screen;
 mod send;

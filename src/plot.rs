@@ -218,9 +218,13 @@ impl Plot {
     /// Takes a motion of the wire's own path, where the control sets it off the programmed one.
     pub fn see_wire(&mut self, motion: &Motion) {
         if let Act::Move { travel: Travel::Cut, element, .. } = &motion.act {
-            self.reach(element);
             self.wire.get_or_insert_with(Layer::new).add(element);
         }
+    }
+
+    /// Takes back what [`Self::see_wire`] was given: the programmed path is the wire's after all, or the best that is known.
+    pub fn forget_wire(&mut self) {
+        self.wire = None;
     }
 
     fn reach(&mut self, element: &Element) {
@@ -231,7 +235,11 @@ impl Plot {
     pub fn finish(mut self) -> Plotted {
         let Self { contours, cuts, .. } = &mut self;
         contours.finish(&mut |run| cuts.draw(&run));
-        let (extent, part) = (self.extent, self.cuts.part);
+        let part = self.cuts.part;
+        let extent = match (self.extent, self.wire.as_ref().and_then(Layer::extent)) {
+            (Some(programmed), Some(wire)) => Some(programmed.united(wire)),
+            (programmed, wire) => programmed.or(wire),
+        };
         let nothing = Extent { min: [0.0; 2], max: [0.0; 2] };
         let seen = extent.unwrap_or(nothing);
         let pen = seen.width().max(seen.height()).max(0.001) / PART_SPAN;

@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hasher as _};
 
-use crate::drawing::{Outline, Thinning, Turn};
+use crate::drawing::{Extent, Outline, Thinning, Turn};
 use crate::geometry::{Element, Point, Sense};
 use crate::units::Micrometres;
 
@@ -56,6 +56,11 @@ impl Layer {
             self.exact.truncate(self.run_from);
         }
         self.run_from = self.exact.len();
+    }
+
+    /// The bounds of what has been drawn, mm.
+    pub(super) fn extent(&self) -> Option<Extent> {
+        Extent::of(self.outermost?.map(|point| [point.x, point.y]))
     }
 
     fn reach(&mut self, element: &Element) {
