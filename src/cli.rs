@@ -27,6 +27,7 @@ mod motions;
 mod output;
 mod plot;
 mod question;
+mod registers;
 mod resume;
 mod screen;
 mod send;

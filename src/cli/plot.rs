@@ -9,14 +9,18 @@
 //! A picture tells at a glance whether it is the right part. The SVG is in model millimetres: a point of the program
 //! stands at (x, -y); its classes are `nominal wire rapid cut lead-in start`. `docs/check.md` says what is drawn.
 
+use std::cell::RefCell;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::{Exit, Failure};
+use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
+use super::registers::Registers;
 use super::{print, print_json};
+use crate::check::wire::{self, Seen};
 use crate::drawing::Extent;
 use crate::interpolator::Model;
 use crate::plot::{Options as What, Plot, Plotted};
@@ -32,6 +36,8 @@ pub(super) struct Options {
     output: PathBuf,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    registers: Registers,
     /// The wire's diameter; 0 draws no wire [default: 0.18]
     #[arg(long, value_name = "MM", value_parser = diameter)]
     wire: Option<f64>,
@@ -87,15 +93,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         numbers: options.numbers,
         simulated,
     });
-    let mut blocks = 0;
-    while let Some(motion) = motions.next() {
-        let motion = motion.map_err(|error| Failure::read(&motions.places.name, error))?;
-        blocks = motion.block;
-        plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
-            let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
-            failure.help("simulate another model with --interpolator, or none with --no-simulation")
-        })?;
-    }
+    let blocks = draw(&mut motions, &mut plot, &options.registers)?;
     let plotted = plot.finish();
     if plotted.extent.is_none() {
         return Err(moves_nothing(&motions.places.name));
@@ -120,6 +118,66 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
 pub(super) fn moves_nothing(name: &str) -> Failure {
     Failure::new(Exit::Program, format!("{name} moves nothing"))
         .help("check that this is the program that was meant")
+}
+
+/// Draws every motion; returns how many blocks there are.
+fn draw(motions: &mut Motions, plot: &mut Plot, registers: &Registers) -> Result<u64, Failure> {
+    let mut blocks = 0;
+    if motions.kind != Kind::Gcode {
+        while let Some(motion) = motions.next() {
+            let motion = motion.map_err(|error| Failure::read(&motions.places.name, error))?;
+            blocks = motion.block;
+            plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
+                let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
+                failure.help("simulate another model with --interpolator, or none with --no-simulation")
+            })?;
+        }
+        if motions.kind == Kind::FourB {
+            say!("the offset is keyed in at the control: the wire is drawn on the programmed path");
+        }
+        return Ok(blocks);
+    }
+    let (plot, mut failed) = (RefCell::new(plot), None);
+    let next = || match motions.next()? {
+        Ok(motion) => {
+            blocks = motion.block;
+            // G-code has no blocks whose pulses could be run, so nothing can fail.
+            let _ = plot.borrow_mut().see(&motion, None);
+            Some(motion)
+        }
+        Err(error) => {
+            failed = Some(Failure::read(&motions.places.name, error));
+            None
+        }
+    };
+    let mut doubt = None;
+    let mut is_offset = false;
+    wire::follow(next, &registers.held(), |seen| match seen {
+        Seen::Switched => is_offset = true,
+        Seen::Motion(motion) => plot.borrow_mut().see_wire(motion),
+        Seen::Passed(warning) => {
+            say!(
+                "block {}: the wire does not reach the contour at {:.3}, {:.3} mm",
+                warning.block,
+                warning.unreached.at.x,
+                warning.unreached.at.y
+            );
+        }
+        Seen::Failed(error) => doubt = Some(error.to_string()),
+        Seen::Unknown(register) => {
+            doubt = Some(format!("what register {register} holds is not given (--register {register}=MM)"));
+        }
+    });
+    if let Some(failure) = failed {
+        return Err(failure);
+    }
+    if let Some(doubt) = &doubt {
+        say!("{doubt}: the wire is drawn on the programmed path");
+    }
+    if !is_offset || doubt.is_some() {
+        plot.into_inner().forget_wire();
+    }
+    Ok(blocks)
 }
 
 fn is_standard_output(path: &Path) -> bool {
