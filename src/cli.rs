@@ -17,6 +17,7 @@ mod convert;
 #[cfg(feature = "demo")]
 mod demo;
 mod dialects;
+mod drawing;
 mod failure;
 mod feeding;
 mod generate;

@@ -24,8 +24,10 @@ use super::motions::{Motions, OfPart, Reading};
 use super::registers::Registers;
 use super::{machines, print, print_json};
 use crate::check::{Check, Finding, Format, Kept, Looked, Report, Settings, Severity, wire};
+use crate::drawing::finding as drawing;
 use crate::interpolator::Model;
 use crate::motion::Motion;
+use crate::place::Spot;
 use crate::profile::Profile;
 
 /// Check a program: everything wrong with it in one run, nothing is sent
@@ -106,6 +108,17 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
         restart_points: options.restart_points,
         syntax_only: options.syntax_only,
     });
+    for found in &motions.report {
+        let severity = match found.severity {
+            drawing::Severity::Fault => Severity::Error,
+            drawing::Severity::Warning => Severity::Warning,
+            // What is as it should be is no finding.
+            drawing::Severity::Note => continue,
+        };
+        let spot = Spot { line: found.line, column: u64::from(found.line > 0), byte: 0 };
+        let (message, help) = (found.to_string(), found.help.clone());
+        check.add(Finding { severity, code: found.code, spot, width: 0, block: 0, message, help });
+    }
     if motions.kind == Kind::Gcode {
         let check = RefCell::new(&mut check);
         let next = || next_of(motions, &mut check.borrow_mut());

@@ -10,7 +10,6 @@
 //! Motions pass one at a time, contours one at a time where they must be seen whole. What the format of OUT has no room
 //! for is counted and told; what it cannot say is refused, with its place in IN.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -19,9 +18,11 @@ use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Places, Reading};
 use super::output::Output;
-use super::{dialects, plot};
+use super::registers::Registers;
+use super::{dialects, drawing, plot};
 use crate::compensation::put_on::PutOn;
 use crate::compensation::{Compensated, Warning};
+use crate::drawing::dxf::DxfWriter;
 use crate::formats::gcode;
 use crate::formats::losses::Losses;
 use crate::formats::three_b::write as three_b;
@@ -29,6 +30,7 @@ use crate::formats::{WriteError, Writer};
 use crate::geometry::offset::Corners;
 use crate::geometry::{Point, Vector};
 use crate::interpolator::Model;
+use crate::motion::lead;
 use crate::motion::reverse::Reversed;
 use crate::motion::runs::ContourError;
 use crate::motion::{Act, Motion, Offset};
@@ -59,16 +61,15 @@ pub(super) struct Options {
     /// The side the wire runs on, as seen in the direction of IN
     #[arg(long, value_name = "left|right", requires = "offset")]
     side: Option<Side>,
-    /// What an offset register of the control holds, such as 1=0.125; may be given again
-    #[arg(long, value_name = "N=MM", value_parser = register)]
-    register: Vec<(u32, f64)>,
+    #[command(flatten)]
+    registers: Registers,
     /// How the wire goes round outside corners: on an arc, or straight on [default: round]
     #[arg(long, value_name = "CORNERS")]
     corners: Option<CornersWord>,
     /// Cut every contour backwards, from its own start hole
     #[arg(long)]
     reverse: bool,
-    /// Where the wire stands before the first block: 3B and 4B do not say it [default: 0,0]
+    /// Where the wire stands before the first block, as 3B and 4B do not say; for a drawing the start hole, from which the wire leads in to the first contour and back [default: 0,0; a drawing without one is begun on its contour]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     start: Option<Point>,
     #[command(flatten)]
@@ -115,6 +116,8 @@ enum To {
     /// Blocks of five words
     #[value(name = "3b")]
     ThreeB,
+    /// A drawing, an entity a motion
+    Dxf,
     /// G-code of a wire-cutting control
     Gcode,
     /// A picture of lines
@@ -152,7 +155,9 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     // A program that is right under any model ends its blocks where `rotated` does.
     let model = if let Aim::One(model) = aim { model } else { Model::Rotated };
     let mut writer = Made::of(to, options, aim)?;
-    let motions = Motions::open(&options.input, &options.reading, OfPart::Elements, model)?;
+    let reading = Reading { start: options.start, ..options.reading.clone() };
+    let motions = Motions::open(&options.input, &reading, OfPart::Elements, model)?;
+    drawing::tell(&motions.places.name, &motions.report)?;
     let mut places = motions.places()?;
     let mut output = Output::open(options.output.as_deref())?;
     if to == To::Png && output.is_terminal() {
@@ -183,6 +188,7 @@ impl Options {
         let by_name = match suffix.map(str::to_ascii_lowercase).as_deref() {
             Some("3b") => Some(To::ThreeB),
             Some("nc" | "iso" | "ngc" | "gcode") => Some(To::Gcode),
+            Some("dxf") => Some(To::Dxf),
             Some("svg") => Some(To::Svg),
             Some("png") => Some(To::Png),
             _ => None,
@@ -227,7 +233,9 @@ type Stream = Box<dyn Iterator<Item = Result<Motion, ContourError>>>;
 fn changed(motions: Motions, options: &Options, to: To) -> Result<Stream, Failure> {
     let kind = motions.kind;
     let mut stream: Stream = Box::new(motions.map(|motion| motion.map_err(ContourError::from)));
-    if let Some(start) = options.start {
+    if let (Some(start), Kind::Dxf) = (options.start, kind) {
+        stream = Box::new(lead::from_hole(stream, start));
+    } else if let Some(start) = options.start {
         if !matches!(kind, Kind::ThreeB | Kind::FourB | Kind::Part) {
             let message =
                 format!("--start goes with 3B, 4B and parts; {} says where it begins", kind.title());
@@ -248,8 +256,7 @@ fn changed(motions: Motions, options: &Options, to: To) -> Result<Stream, Failur
         stream = Box::new(stream.map(move |motion| motion.map(|motion| measured(motion, distance))));
     }
     if is_wire || options.offset.is_some() {
-        let registers: BTreeMap<u32, f64> = options.register.iter().copied().collect();
-        let mut wire = Compensated::new(stream, registers, options.corners());
+        let mut wire = Compensated::new(stream, options.registers.held(), options.corners());
         stream = Box::new(std::iter::from_fn(move || {
             let motion = wire.next();
             for warning in wire.take_warnings() {
@@ -295,6 +302,7 @@ fn tell(warning: &Warning) {
 enum Made {
     ThreeB(Box<three_b::Writer>),
     Gcode { writer: Box<gcode::Writer>, motions: u64 },
+    Dxf { writer: DxfWriter, motions: u64 },
     Picture { plot: Box<Plot>, to: To, moves: u64 },
 }
 
@@ -328,6 +336,7 @@ impl Made {
                 let layout = gcode::Layout { number_step: *number_step, suppress: *suppress };
                 Self::Gcode { writer: Box::new(gcode::Writer::with_layout(dialect, layout)), motions: 0 }
             }
+            To::Dxf => Self::Dxf { writer: DxfWriter::new(), motions: 0 },
             To::Svg | To::Png => {
                 let name = Path::new(&options.input).file_name();
                 let plot = Plot::new(crate::plot::Options {
@@ -346,6 +355,10 @@ impl Made {
         match self {
             Self::ThreeB(writer) => writer.write(motion, text),
             Self::Gcode { writer, motions } => {
+                *motions += is_move;
+                writer.write(motion, text)
+            }
+            Self::Dxf { writer, motions } => {
                 *motions += is_move;
                 writer.write(motion, text)
             }
@@ -376,6 +389,10 @@ impl Made {
                 Ok(account)
             }
             Self::Gcode { mut writer, motions } => {
+                writer.finish(text).map_err(Unfinished::Write)?;
+                Ok(counted(motions, "motion"))
+            }
+            Self::Dxf { mut writer, motions } => {
                 writer.finish(text).map_err(Unfinished::Write)?;
                 Ok(counted(motions, "motion"))
             }
@@ -441,12 +458,6 @@ fn distance(text: &str) -> Result<f64, String> {
         Ok(value) if value.abs() <= 100.0 => Ok(value),
         _ => Err("an offset is a length in mm, up to 100".to_owned()),
     }
-}
-
-fn register(text: &str) -> Result<(u32, f64), String> {
-    let split =
-        text.split_once('=').and_then(|(n, mm)| Some((n.trim().parse().ok()?, distance(mm.trim()).ok()?)));
-    split.ok_or_else(|| "a register is a number and what it holds in mm, such as 1=0.125".to_owned())
 }
 
 fn point(text: &str) -> Result<Point, String> {

@@ -11,13 +11,16 @@ use std::path::Path;
 use clap::Args;
 
 use super::dialects;
+use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::source;
+use crate::drawing::finding::Finding;
 use crate::formats::ReadError;
 use crate::formats::gcode::{self, Dialect};
 use crate::formats::lines::Line;
 use crate::formats::three_b::{self, Block};
+use crate::geometry::Point;
 use crate::interpolator::Model;
 use crate::motion::{Act, Motion};
 use crate::part::{Part, Prepared};
@@ -36,6 +39,11 @@ pub(super) struct Reading {
     /// The dialect of the machine, where it is known and no other is named.
     #[arg(skip)]
     pub(super) of_machine: Option<String>,
+    #[command(flatten)]
+    pub(super) drawing: drawing::Reading,
+    /// Where the wire enters a drawing.
+    #[arg(skip)]
+    pub(super) start: Option<Point>,
 }
 
 impl Reading {
@@ -60,6 +68,8 @@ pub(super) struct Motions {
     pub(super) places: Places,
     source: Source,
     part: Option<Part>,
+    /// What was found in a drawing.
+    pub(super) report: Vec<Finding>,
 }
 
 /// Where to look up what stands at a spot.
@@ -116,7 +126,12 @@ impl Motions {
             let message = format!("--dialect goes with G-code, and {word} is {}", kind.title());
             return Err(Failure::new(Exit::Usage, message).help("leave it out, or say --from gcode"));
         }
-        let (mut part, mut file) = (None, None);
+        if reading.drawing.is_given() && kind != Kind::Dxf {
+            let message = format!("{word} is {}, and not a drawing", kind.title());
+            return Err(Failure::new(Exit::Usage, message)
+                .help("leave out what goes with drawings only, or say --from dxf"));
+        }
+        let (mut part, mut file, mut report) = (None, None, Vec::new());
         let blocks = |motions| Source::Blocks { motions: Box::new(motions), base: Spot::default() };
         let source = match kind {
             Kind::Part => {
@@ -132,8 +147,10 @@ impl Motions {
                 }
             }
             Kind::Dxf => {
-                let message = format!("{word} is a drawing, and drawings are not read yet");
-                return Err(Failure::new(Exit::Usage, message));
+                let drawing = reading.drawing.read(word, reading.start)?;
+                let motions: Vec<Motion> = drawing.motions().collect();
+                report = drawing.report;
+                Source::Made(Box::new(motions.into_iter()))
             }
             Kind::ThreeB | Kind::FourB | Kind::Gcode => {
                 let failed = |error: io::Error| source::unreadable(word, &error);
@@ -159,7 +176,7 @@ impl Motions {
             }
         };
         let name = if word == "-" { "standard input".to_owned() } else { word.to_owned() };
-        Ok(Self { kind, places: Places { name, kind, file }, source, part })
+        Ok(Self { kind, places: Places { name, kind, file }, source, part, report })
     }
 
     /// The 3B block the last motion came from.
