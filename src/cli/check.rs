@@ -37,8 +37,6 @@ pub(super) struct Options {
     #[arg(value_name = "IN")]
     input: String,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
     registers: Registers,
     /// The machine to check against: a built-in profile or a file [default: generic-iso]
     #[arg(long, value_name = "NAME|FILE")]
@@ -55,6 +53,8 @@ pub(super) struct Options {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

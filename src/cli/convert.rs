@@ -47,7 +47,7 @@ pub(super) struct Options {
     /// A program, a drawing, a part file, or - for standard input
     #[arg(value_name = "IN")]
     input: String,
-    /// What to make [default: by the name after -o]
+    /// What to make [default: by the name after -o, else what IN is]
     #[arg(long, value_name = "FORMAT")]
     to: Option<To>,
     /// Where it goes [default: standard output]
@@ -55,6 +55,18 @@ pub(super) struct Options {
     output: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    wire: Wire,
+    #[command(flatten)]
+    blocks: Blocks,
+    #[command(flatten)]
+    gcode: Gcode,
+}
+
+/// Where the wire goes.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Wire")]
+struct Wire {
     /// Work out the wire's path so far from the contour, mm: half the wire and the gap. Without --side: what the program's own offsets measure
     #[arg(long, value_name = "MM", value_parser = distance)]
     offset: Option<f64>,
@@ -72,10 +84,6 @@ pub(super) struct Options {
     /// Where the wire stands before the first block, as 3B and 4B do not say; for a drawing the start hole, from which the wire leads in to the first contour and back [default: 0,0; a drawing without one is begun on its contour]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     start: Option<Point>,
-    #[command(flatten)]
-    blocks: Blocks,
-    #[command(flatten)]
-    gcode: Gcode,
 }
 
 /// How 3B and 4B are written.
@@ -100,7 +108,7 @@ struct Blocks {
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "G-code")]
 struct Gcode {
-    /// The control it is for: a built-in dialect or a dialect file [default: generic]
+    /// The control OUT is for: a built-in dialect or a dialect file [default: that of IN, else generic]
     #[arg(long, value_name = "NAME|FILE")]
     to_dialect: Option<String>,
     /// Number the blocks in steps, in place of the numbers they had
@@ -155,7 +163,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     // A program that is right under any model ends its blocks where `rotated` does.
     let model = if let Aim::One(model) = aim { model } else { Model::Rotated };
     let mut writer = Made::of(to, options, aim)?;
-    let reading = Reading { start: options.start, ..options.reading.clone() };
+    let reading = Reading { start: options.wire.start, ..options.reading.clone() };
     let motions = Motions::open(&options.input, &reading, OfPart::Elements, model)?;
     drawing::tell(&motions.places.name, &motions.report)?;
     let mut places = motions.places()?;
@@ -193,7 +201,13 @@ impl Options {
             Some("png") => Some(To::Png),
             _ => None,
         };
-        self.to.or(by_name).ok_or_else(|| {
+        let by_input = || match Kind::asked(&self.input, self.reading.from) {
+            Ok(Kind::ThreeB) => Some(To::ThreeB),
+            Ok(Kind::Gcode) => Some(To::Gcode),
+            Ok(Kind::Dxf) => Some(To::Dxf),
+            Ok(Kind::FourB | Kind::Part) | Err(_) => None,
+        };
+        self.to.or(by_name).or_else(by_input).ok_or_else(|| {
             Failure::new(Exit::Usage, "what to make is not said")
                 .help("name a format with --to, such as --to 3b")
         })
@@ -218,7 +232,9 @@ impl Options {
         }
         Ok(())
     }
+}
 
+impl Wire {
     fn corners(&self) -> Corners {
         match self.corners {
             None | Some(CornersWord::Round) => Corners::Round,
@@ -233,9 +249,9 @@ type Stream = Box<dyn Iterator<Item = Result<Motion, ContourError>>>;
 fn changed(motions: Motions, options: &Options, to: To) -> Result<Stream, Failure> {
     let kind = motions.kind;
     let mut stream: Stream = Box::new(motions.map(|motion| motion.map_err(ContourError::from)));
-    if let (Some(start), Kind::Dxf) = (options.start, kind) {
+    if let (Some(start), Kind::Dxf) = (options.wire.start, kind) {
         stream = Box::new(lead::from_hole(stream, start));
-    } else if let Some(start) = options.start {
+    } else if let Some(start) = options.wire.start {
         if !matches!(kind, Kind::ThreeB | Kind::FourB | Kind::Part) {
             let message =
                 format!("--start goes with 3B, 4B and parts; {} says where it begins", kind.title());
@@ -245,18 +261,18 @@ fn changed(motions: Motions, options: &Options, to: To) -> Result<Stream, Failur
         stream = Box::new(stream.map(move |motion| motion.map(|motion| moved(motion, by))));
     }
     // 3B has no offset; a picture shows the wire's path. G-code keeps an offset for the control, unless one is put on.
-    let is_wire = options.side.is_some() || matches!(to, To::ThreeB);
-    if let (Some(side), Some(distance)) = (options.side, options.offset) {
+    let is_wire = options.wire.side.is_some() || matches!(to, To::ThreeB);
+    if let (Some(side), Some(distance)) = (options.wire.side, options.wire.offset) {
         let side = match side {
             Side::Left => crate::motion::Side::Left,
             Side::Right => crate::motion::Side::Right,
         };
         stream = Box::new(PutOn::new(stream, side, distance));
-    } else if let Some(distance) = options.offset {
+    } else if let Some(distance) = options.wire.offset {
         stream = Box::new(stream.map(move |motion| motion.map(|motion| measured(motion, distance))));
     }
-    if is_wire || options.offset.is_some() {
-        let mut wire = Compensated::new(stream, options.registers.held(), options.corners());
+    if is_wire || options.wire.offset.is_some() {
+        let mut wire = Compensated::new(stream, options.wire.registers.held(), options.wire.corners());
         stream = Box::new(std::iter::from_fn(move || {
             let motion = wire.next();
             for warning in wire.take_warnings() {
@@ -265,7 +281,7 @@ fn changed(motions: Motions, options: &Options, to: To) -> Result<Stream, Failur
             Some(motion?.map_err(ContourError::from))
         }));
     }
-    if options.reverse {
+    if options.wire.reverse {
         stream = Box::new(Reversed::new(stream));
     }
     Ok(stream)
@@ -332,7 +348,8 @@ impl Made {
             }
             To::Gcode => {
                 let Gcode { to_dialect, number_step, suppress } = &options.gcode;
-                let dialect = dialects::load(to_dialect.as_deref(), "written")?;
+                let dialect =
+                    dialects::load(to_dialect.as_deref().or(options.reading.dialect.as_deref()), "written")?;
                 let layout = gcode::Layout { number_step: *number_step, suppress: *suppress };
                 Self::Gcode { writer: Box::new(gcode::Writer::with_layout(dialect, layout)), motions: 0 }
             }
@@ -341,7 +358,7 @@ impl Made {
                 let name = Path::new(&options.input).file_name();
                 let plot = Plot::new(crate::plot::Options {
                     title: name.map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
-                    wire: options.offset.map(|offset| 2.0 * offset.abs()).filter(|wire| *wire > 0.0),
+                    wire: options.wire.offset.map(|offset| 2.0 * offset.abs()).filter(|wire| *wire > 0.0),
                     numbers: None,
                     simulated: None,
                 });

@@ -16,7 +16,7 @@ use crate::geometry::{Point, Sense};
 /// How a drawing is read.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Drawings")]
-pub(super) struct Reading {
+pub(super) struct OfDrawing {
     /// How far lines and arcs may lie from a curve, mm [default: 0.001]
     #[arg(long, value_name = "MM", value_parser = length)]
     tolerance: Option<f64>,
@@ -72,7 +72,7 @@ enum Turn {
     Ccw,
 }
 
-impl Reading {
+impl OfDrawing {
     /// Whether any of it is said.
     pub(super) fn is_given(&self) -> bool {
         self.tolerance.is_some()

@@ -40,7 +40,7 @@ pub(super) struct Reading {
     #[arg(skip)]
     pub(super) of_machine: Option<String>,
     #[command(flatten)]
-    pub(super) drawing: drawing::Reading,
+    pub(super) drawing: drawing::OfDrawing,
     /// Where the wire enters a drawing.
     #[arg(skip)]
     pub(super) start: Option<Point>,

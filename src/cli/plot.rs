@@ -36,8 +36,6 @@ pub(super) struct Options {
     #[arg(short, long, value_name = "OUT.svg|OUT.png")]
     output: PathBuf,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
     registers: Registers,
     /// The wire's diameter; 0 draws no wire [default: 0.18]
     #[arg(long, value_name = "MM", value_parser = diameter)]
@@ -57,6 +55,8 @@ pub(super) struct Options {
     /// Print what was drawn as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 /// What pictures can be written.
