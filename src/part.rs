@@ -11,6 +11,8 @@ pub use crate::formats::three_b::StopWord;
 use crate::formats::three_b::Style;
 use crate::geometry::{Element, Point};
 use crate::interpolator::Model;
+use crate::motion::{Act, Motion, Stop, Travel};
+use crate::place::Spot;
 use crate::rounding::closed_loop::ClosedLoop;
 use crate::rounding::per_block::PerBlock;
 use crate::rounding::{Aim, Made, Role, Step};
@@ -198,6 +200,18 @@ impl Prepared {
             })
         };
         lead_in.into_iter().chain((0..self.part.repeat).flat_map(once))
+    }
+
+    /// What the program makes the machine do, in no format yet, its end included.
+    pub fn motions(&self) -> impl Iterator<Item = Motion> + Send + use<> {
+        let moves = self.steps().map(|step| Act::Move {
+            travel: Travel::Cut,
+            element: step.element,
+            upper: None,
+            flag: None,
+        });
+        let acts = moves.chain(std::iter::once(Act::Stop(Stop::End)));
+        (1..).zip(acts).map(|(block, act)| Motion { act, block, spot: Spot::default() })
     }
 
     /// The blocks of the whole program, one at a time.

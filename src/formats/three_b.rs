@@ -313,4 +313,28 @@ mod tests {
             assert_eq!(Block::line(Position::new(x, y)).g, g);
         }
     }
+
+    #[test]
+    fn the_digits_go_round_the_quadrants_with_their_signs() {
+        for (digit, signs) in [(b'1', (1, 1)), (b'2', (-1, 1)), (b'3', (-1, -1)), (b'4', (1, -1))] {
+            let quadrant = Quadrant::from_digit(digit).unwrap();
+            assert_eq!((quadrant.signs(), quadrant.digit()), (signs, digit));
+        }
+        assert_eq!((Quadrant::from_digit(b'0'), Quadrant::from_digit(b'5')), (None, None));
+    }
+
+    #[test]
+    fn inside_a_quadrant_the_digit_gives_back_the_signs_of_the_point() {
+        for (x, y, digit) in [(3, 4, '1'), (-3, 4, '2'), (-3, -4, '3'), (3, -4, '4')] {
+            let point = Position::new(x, y);
+            for (block, letters) in [
+                (Block::line(point), "L"),
+                (Block::arc(point, Sense::Clockwise, Axis::Y, Micrometres(2)), "SR"),
+                (Block::arc(point, Sense::CounterClockwise, Axis::Y, Micrometres(2)), "NR"),
+            ] {
+                assert!(text(Style::default(), &block).ends_with(&format!("GY{letters}{digit}")));
+                assert_eq!(block.signed(), point);
+            }
+        }
+    }
 }

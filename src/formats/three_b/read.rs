@@ -283,6 +283,7 @@ impl<R: io::Read> Reader<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::three_b::{Quadrant, Sense};
     use crate::units::Position;
 
     fn read(text: &str) -> Result<Vec<(Item, String)>, ReadError> {
@@ -379,5 +380,108 @@ mod tests {
             let mut reader = Reader::new(&bytes[..]);
             while let Ok(Some(_)) = reader.next_item() {}
         }
+    }
+
+    fn refused_place(text: &str) -> Place {
+        match read(text).unwrap_err() {
+            ReadError::Program { place, .. } => place,
+            ReadError::Io(error) => panic!("{error}"),
+        }
+    }
+
+    #[test]
+    fn remarks_in_parentheses_are_passed_over_and_end_with_their_line() {
+        let program = "(first) B7B0B7GXL1 (B9 B9) B0B8B8GYL2 (open B9B0B9GXL1\nB9B0B9GXL1";
+        assert_eq!(texts(program), ["B7B0B7GXL1", "B0B8B8GYL2", "B9B0B9GXL1"]);
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_passed_over_at_the_very_start_only() {
+        assert_eq!(texts("\u{feff}B7B0B7GXL1"), ["B7B0B7GXL1"]);
+        for (program, line, column) in [
+            ("B7B0B7GXL1\n\u{feff}B7B0B7GXL1", 2, 1),
+            ("B7B0B7GXL1\u{feff}B7B0B7GXL1", 1, 11),
+            ("\u{ff22}\u{ff22}B7B0B7GXL1", 1, 1),
+        ] {
+            let place = refused_place(program);
+            assert_eq!((place.line, place.column), (line, column), "{program}");
+        }
+    }
+
+    #[test]
+    fn a_line_number_is_digits_with_a_colon() {
+        assert_eq!(texts("N 12:B7B0B7GXL1\nn13: B7B0B7GXL1"), ["B7B0B7GXL1", "B7B0B7GXL1"]);
+        for program in ["N12XB7B0B7GXL1", "N 12 B7B0B7GXL1", "N : B7B0B7GXL1", "N:B7B0B7GXL1"] {
+            assert_eq!(refusal(program), ("neither a 3B block nor a comment".to_owned(), 1, 1), "{program}");
+        }
+    }
+
+    #[test]
+    fn each_stop_word_is_known_by_its_own_name() {
+        for (program, word) in
+            [("D", "D"), ("d\n", "D"), ("D ", "D"), ("DD", "DD"), ("dd;", "DD"), ("E ", "E")]
+        {
+            let (item, _) = read(program).unwrap().remove(0);
+            assert_eq!(item, Item::StopWord(word), "{program}");
+        }
+        for program in ["DDX", "DX", "EX", "DE"] {
+            assert!(refusal(program).0.contains("neither"), "{program}");
+        }
+    }
+
+    #[test]
+    fn every_instruction_is_read_as_what_it_says() {
+        for (text, sense, digit) in [
+            ("B0B5B5GXSR1", Sense::Clockwise, Quadrant::First),
+            ("B5B0B5GXSR2", Sense::Clockwise, Quadrant::Second),
+            ("B5B0B5GXNR1", Sense::CounterClockwise, Quadrant::First),
+            ("B5B0B5GXNR3", Sense::CounterClockwise, Quadrant::Third),
+        ] {
+            let Item::Block(block) = read(text).unwrap().remove(0).0 else { panic!("{text} is a block") };
+            assert_eq!(block.motion, Motion::Arc(sense, digit));
+        }
+    }
+
+    #[test]
+    fn a_sign_or_a_point_is_named_wherever_a_number_begins_with_it() {
+        for sign in ['-', '+', '.'] {
+            let (message, _, column) = refusal(&format!("B{sign}1B2B3GXL1"));
+            assert!(message.starts_with(&format!("X holds `{sign}`")), "{message}");
+            assert_eq!(column, 2);
+        }
+    }
+
+    #[test]
+    fn the_largest_count_is_read_and_a_larger_number_is_underlined() {
+        assert_eq!(texts("B999999B0B999999GXL1"), ["B999999B0B999999GXL1"]);
+        let place = refused_place("B7B0B7GXL1\nB1000000B0B1000000GXL1");
+        assert_eq!((place.line, place.column, place.byte, place.width), (2, 12, 22, 7));
+        let zeros = format!("B{}B{}B1GXL1", "0".repeat(199), "0".repeat(500));
+        assert!(refusal(&zeros).0.contains("too many zeros"));
+    }
+
+    #[test]
+    fn a_block_that_never_ends_is_underlined_whole_on_the_line_it_ends_on() {
+        let place = refused_place("B7B0B7GXL1\nB7B0B7GXL1 B0B0B500GYL1 B7B0B7GXL1\n");
+        assert_eq!((place.line, place.column, place.byte, place.width), (2, 12, 22, 12));
+        let place = refused_place("B7B0B7GXL1 B0B0\nB500GYL1 B7B0B7GXL1\n");
+        assert_eq!((place.line, place.column, place.byte, place.width), (2, 1, 16, 8));
+        let long =
+            format!("{}B0B0B500GYL1{}", "B9900B0B9900GXL1".repeat(4095), "B9900B0B9900GXL1".repeat(4095));
+        let place = refused_place(&long);
+        assert_eq!((place.line, place.column, place.byte, place.width), (1, 65_521, 65_520, 12));
+    }
+
+    #[test]
+    fn a_line_may_be_as_long_as_is_said_and_what_stands_behind_its_blocks_is_not_lost() {
+        let remark = format!(";{}", "x".repeat(LINE_BYTES_MAX - 1));
+        assert_eq!(texts(&remark), [""; 0]);
+        assert!(refusal(&format!("{remark}x")).0.contains("longer"));
+        let gap = " ".repeat(LINE_BYTES_MAX);
+        assert!(refusal(&format!("B7B0B7GXL1{gap}B7B0B7GXL1")).0.contains("longer"));
+        let blocks = "B9900B0B9900GXL1".repeat(4000);
+        let blanks = " ".repeat(LINE_BYTES_MAX - 1 - blocks.len());
+        let items = read(&format!("{blocks}{blanks}DD")).unwrap();
+        assert_eq!((items.len(), &items[4000].0), (4001, &Item::StopWord("DD")));
     }
 }
