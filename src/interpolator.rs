@@ -4,10 +4,11 @@
 //! which variant a given control runs, so the variant is a [`Model`], a value of the machine profile, *unverified*
 //! until a calibration cut settles it. The end of a block follows in closed form from `F = x² + y² − R²`, which holds
 //! at every step of an arc, so the cost of a block does not grow with its length; the tests prove the closed form
-//! against stepping. Individual pulses are not here.
+//! against stepping. The single pulses are in [`pulses`].
 
 mod arc;
 mod line;
+pub mod pulses;
 
 use thiserror::Error;
 

@@ -6,6 +6,9 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
+use super::failure::{Exit, Failure};
+use super::source;
+
 /// What a source is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub(super) enum Kind {
@@ -37,8 +40,37 @@ impl Kind {
         }
     }
 
+    /// What it is called in a sentence.
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::ThreeB => "3B",
+            Self::FourB => "4B",
+            Self::Gcode => "G-code",
+            Self::Dxf => "a drawing",
+            Self::Part => "a part file",
+        }
+    }
+
     pub(super) fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// What a word on the command line stands for: by what `--from` says, else as [`Kind::of`].
+    pub(super) fn asked(word: &str, from: Option<Self>) -> Result<Self, Failure> {
+        if word == "-" {
+            return from.ok_or_else(|| {
+                Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
+                    .help("for example `--from 3b`")
+            });
+        }
+        let metadata = std::fs::metadata(word).map_err(|error| source::unreadable(word, &error))?;
+        if metadata.is_dir() {
+            return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program")));
+        }
+        from.or_else(|| Self::of(word, metadata.is_file())).ok_or_else(|| {
+            Failure::new(Exit::Usage, format!("what {word} is cannot be told from its name"))
+                .help("name a .3b, .4b, .nc, .dxf or .toml file, or say what it is with --from")
+        })
     }
 
     /// What the name of a file says it is; failing that, its first bytes. What can be read only once is not looked into.

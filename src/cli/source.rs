@@ -68,7 +68,7 @@ pub(super) fn part_file(path: &str) -> Result<(PartFile, blake3::Hash), Failure>
     Ok((file, blake3::hash(text.as_bytes())))
 }
 
-fn unreadable(path: &str, error: &io::Error) -> Failure {
+pub(super) fn unreadable(path: &str, error: &io::Error) -> Failure {
     let help = match error.kind() {
         io::ErrorKind::NotFound => "check the name; a shape is generated with `dripfeed generate`",
         io::ErrorKind::InvalidData => "the file is not UTF-8 text",
@@ -80,30 +80,15 @@ fn unreadable(path: &str, error: &io::Error) -> Failure {
 impl Source {
     /// Opens and checks what a word on the command line stands for.
     pub(super) fn open(word: &str, from: Option<Kind>) -> Result<Self, Failure> {
+        let kind = Kind::asked(word, from)?;
         if word == "-" {
-            return match from {
-                Some(Kind::Part) => Self::part("-", Path::new("-")),
-                Some(kind) => Self::stream(word, kind),
-                None => {
-                    Err(Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
-                        .help("for example `--from 3b`"))
-                }
+            return if kind == Kind::Part {
+                Self::part("-", Path::new("-"))
+            } else {
+                Self::stream(word, kind)
             };
         }
         let metadata = std::fs::metadata(word).map_err(|error| unreadable(word, &error))?;
-        if metadata.is_dir() {
-            return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program")));
-        }
-        let kind = match from.or_else(|| Kind::of(word, metadata.is_file())) {
-            Some(kind) => kind,
-            None => {
-                return Err(Failure::new(
-                    Exit::Usage,
-                    format!("what {word} is cannot be told from its name"),
-                )
-                .help("name a .3b, .4b or .nc program or a .toml part file, or say what it is with --from"));
-            }
-        };
         let path = std::path::absolute(word).map_err(|error| unreadable(word, &error))?;
         match kind {
             Kind::Part => Self::part(word, &path),

@@ -29,6 +29,8 @@ pub struct Motions<R> {
     waiting: Option<Move>,
     round: Option<Round>,
     over: bool,
+    is_four_b: bool,
+    last: Option<Block>,
 }
 
 /// A block read and not yet told.
@@ -52,17 +54,44 @@ struct Round {
 impl<R: io::Read> Motions<R> {
     /// The motions of a 3B program, on a control of a model.
     pub fn of_three_b(source: R, model: Model) -> Self {
-        Self::of(Reader::new(source), model)
+        Self::of(Reader::new(source), model, false)
     }
 
     /// The motions of a program in which 3B and 4B are mixed.
     pub fn of_four_b(source: R, model: Model) -> Self {
-        Self::of(Reader::of_four_b(source), model)
+        Self::of(Reader::of_four_b(source), model, true)
     }
 
-    fn of(reader: Reader<R>, model: Model) -> Self {
-        let at = Position::default();
-        Self { reader, model, at, block: 0, waiting: None, round: None, over: false }
+    fn of(reader: Reader<R>, model: Model, is_four_b: bool) -> Self {
+        Self {
+            reader,
+            model,
+            at: Position::default(),
+            block: 0,
+            waiting: None,
+            round: None,
+            over: false,
+            is_four_b,
+            last: None,
+        }
+    }
+
+    /// Goes on behind an error, at another place of the same program, from where the control stands.
+    pub fn go_on_from(&mut self, source: R) {
+        self.reader = if self.is_four_b { Reader::of_four_b(source) } else { Reader::new(source) };
+        (self.waiting, self.round, self.over) = (None, None, false);
+    }
+
+    /// The block the last motion came from; none where it came from none, or is a further piece of an arc.
+    #[must_use]
+    pub fn last_block(&self) -> Option<Block> {
+        self.last
+    }
+
+    /// The text of the last block or stop word as it goes to the control.
+    #[must_use]
+    pub fn text(&self) -> &[u8] {
+        self.reader.text()
     }
 
     /// Where the control stands.
@@ -72,6 +101,7 @@ impl<R: io::Read> Motions<R> {
     }
 
     fn next_motion(&mut self) -> Result<Option<Motion>, ReadError> {
+        self.last = None;
         if let Some(round) = self.round.take() {
             return Ok(Some(self.piece(round)));
         }
@@ -115,6 +145,7 @@ impl<R: io::Read> Motions<R> {
 
     /// Runs a block.
     fn travel(&mut self, Move { block, flag }: Move) -> Result<Motion, ReadError> {
+        self.last = Some(block);
         let start = self.at;
         let end = self.end_of(&block, start)?;
         let line = Element::Line { start: millimetres(start), end: millimetres(end) };
