@@ -69,22 +69,12 @@ pub struct Layout {
     pub closed: bool,
 }
 
-impl Run {
-    /// The elements cut, in order, each with its motion's place in [`Run::motions`].
-    pub fn cuts(&self) -> impl DoubleEndedIterator<Item = (usize, Element)> {
-        self.motions.iter().enumerate().filter_map(|(n, motion)| match motion.act {
-            Act::Move { element, .. } => Some((n, element)),
-            _ => None,
-        })
-    }
-
-    /// How the run is made up.
+impl Layout {
+    /// How moves are made up that go from each node to the next.
     ///
     /// An outline is what comes back to a node. Moves at both ends that lead there and back again are leads.
     #[must_use]
-    pub fn layout(&self) -> Layout {
-        let mut nodes: Vec<Point> = self.cuts().map(|(_, element)| element.start()).collect();
-        nodes.extend(self.cuts().next_back().map(|(_, element)| element.end()));
+    pub fn of(nodes: &[Point]) -> Self {
         let Some(moves) = nodes.len().checked_sub(1).filter(|&moves| moves > 0) else {
             return Layout { lead_in: 0, lead_out: 0, closed: false };
         };
@@ -107,9 +97,33 @@ impl Run {
         }
         Layout { lead_in: 0, lead_out: 0, closed: false }
     }
+}
 
-    /// Whether the wire is back where the outline, or the way to it, began, or has only gone straight.
+impl Run {
+    /// The elements cut, in order, each with its motion's place in [`Run::motions`].
+    pub fn cuts(&self) -> impl DoubleEndedIterator<Item = (usize, Element)> {
+        self.motions.iter().enumerate().filter_map(|(n, motion)| match motion.act {
+            Act::Move { element, .. } => Some((n, element)),
+            _ => None,
+        })
+    }
+
+    /// How the run is made up.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        let mut nodes: Vec<Point> = self.cuts().map(|(_, element)| element.start()).collect();
+        nodes.extend(self.cuts().next_back().map(|(_, element)| element.end()));
+        Layout::of(&nodes)
+    }
+
+    /// Whether the wire is back where the outline, or the way to it, began, or has only gone straight. With a flag a way
+    /// that goes straight leads to an outline.
     fn has_come_home(&self) -> bool {
+        if let [Motion { act: Act::Move { flag: Some(_), .. }, .. }, rest @ ..] = self.motions.as_slice()
+            && !rest.iter().any(|motion| matches!(motion.act, Act::Move { .. }))
+        {
+            return false;
+        }
         let Some((_, last)) = self.cuts().next_back() else { return true };
         let home = |(_, first): (usize, Element)| (first.start() - last.end()).norm() <= MEET_MM;
         self.cuts().nth(1).is_none() || self.cuts().take(1 + LEAD_MOVES_MAX).any(home)
