@@ -42,9 +42,10 @@ impl Outlined {
         }
         if layout.closed && (from, to) == (0, count) && count > 2 {
             // From the hole and back to it, and on round the outline a little farther than once.
-            let meets = |at: Point, nodes: &[Point]| nodes.iter().any(|node| (node - at).norm() <= MEET_MM);
-            from = usize::from(is_line(0) && meets(nodes[1], &nodes[2..count]));
-            to -= usize::from(is_line(count - 1) && meets(nodes[count - 1], &nodes[1..count - 1]));
+            let on =
+                |at: Point, cuts: &[(usize, Element)]| cuts.iter().any(|cut| cut.1.distance(at) <= MEET_MM);
+            from = usize::from(is_line(0) && on(nodes[1], &cuts[2..]));
+            to -= usize::from(is_line(count - 1) && on(nodes[count - 1], &cuts[..count - 2]));
         }
         // Arcs that lead in and out without a corner are set off like the outline.
         let is_arc = |n: usize| !is_line(n);
