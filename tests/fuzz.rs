@@ -1,6 +1,10 @@
-//! Arbitrary bytes into every reader: no panic, no unbounded memory, no silent loss.
+//! Arbitrary bytes into every reader: refused or read, but never a panic, and nothing lost in silence.
 //!
-//! Bounded here; `cargo bolero test -T 10m NAME` runs one of them for long.
+//! `cargo test --test fuzz` tries each for a moment; `cargo bolero test three_b::…` goes on for as long as one likes.
 
+#[path = "fuzz/four_b.rs"]
+mod four_b;
 #[path = "fuzz/gcode.rs"]
 mod gcode;
+#[path = "fuzz/three_b.rs"]
+mod three_b;

@@ -24,6 +24,8 @@ pub struct Motions<R> {
     /// Blocks of the main program so far.
     block: u64,
     state: State,
+    /// Where an error ended the reading.
+    failed_in: Option<State>,
     ready: VecDeque<Motion>,
 }
 
@@ -67,6 +69,7 @@ impl<R: Read> Motions<R> {
             called: Vec::new(),
             block: 0,
             state: State::Running,
+            failed_in: None,
             ready: VecDeque::new(),
         }
     }
@@ -104,6 +107,7 @@ impl<R: Read> Iterator for Motions<R> {
                 Err(error) => {
                     // What the faulty block said before the fault is not executed.
                     self.ready.clear();
+                    self.failed_in = matches!(error, ReadError::Program { .. }).then_some(self.state);
                     self.state = State::Done;
                     return Some(Err(error));
                 }
@@ -113,6 +117,17 @@ impl<R: Read> Iterator for Motions<R> {
 }
 
 impl<R: Read> Motions<R> {
+    /// Goes on behind an error, at the next line and as if the faulty block were not there; false where that cannot be.
+    pub fn go_on(&mut self) -> bool {
+        match self.failed_in.take() {
+            Some(state) => {
+                self.state = state;
+                true
+            }
+            None => false,
+        }
+    }
+
     /// Executes the next line of the main program; false at the end of the source.
     fn main_line(&mut self) -> Result<bool, ReadError> {
         let Some(line) = self.lines.next_line()? else { return Ok(false) };
