@@ -13,6 +13,7 @@ macro_rules! say {
 
 mod check;
 mod connection;
+mod convert;
 #[cfg(feature = "demo")]
 mod demo;
 mod dialects;
@@ -23,8 +24,10 @@ mod jobs;
 mod kind;
 mod machines;
 mod motions;
+mod output;
 mod plot;
 mod question;
+mod registers;
 mod resume;
 mod screen;
 mod send;
@@ -51,6 +54,7 @@ enum Command {
     #[cfg(feature = "demo")]
     Demo(demo::Options),
     Generate(generate::Options),
+    Convert(convert::Options),
     Check(check::Options),
     Plot(plot::Options),
     Send(send::Options),
@@ -76,6 +80,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "demo")]
         Command::Demo(options) => demo::run(&options),
         Command::Generate(options) => generate::run(options),
+        Command::Convert(options) => convert::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Plot(options) => plot::run(&options),
         Command::Send(options) => send::run(options),

@@ -1,7 +1,9 @@
 //! A program as the sender sees it: lines of text pulled one at a time, whatever they are made from.
 //!
-//! A part is generated, a 3B file is read; neither is ever held. A program is pulled once; to send it again it is made
+//! A part is generated, a program is read; neither is ever held. A program is pulled once; to send it again it is made
 //! again, and [`Segments`] tells whether it is still the same.
+
+pub mod verbatim;
 
 use std::io::BufRead;
 

@@ -1,0 +1,15 @@
+//! Offsets, compensation and cutting plans judged by dense sampling and by formulas, from outside.
+//!
+//! The distances here are worked out again in `offset/measure.rs`; the contours are random ones no one drew by hand,
+//! non-convex, with arcs, with slots too narrow for the wire and necks at which they come apart.
+
+#[path = "offset/contours.rs"]
+mod contours;
+#[path = "offset/formulas.rs"]
+mod formulas;
+#[path = "offset/measure.rs"]
+mod measure;
+#[path = "offset/reach.rs"]
+mod reach;
+#[path = "offset/sampling.rs"]
+mod sampling;
