@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::Path;
 
-use dripfeed::formats::gcode::dialect::{ArcCentre, BUILT_IN, Dialect};
 use dripfeed::formats::Writer as _;
+use dripfeed::formats::gcode::dialect::{ArcCentre, BUILT_IN, Dialect};
 use dripfeed::formats::gcode::{Boundaries, Layout, Motions, Writer};
 use dripfeed::geometry::{Element, Sense};
 use dripfeed::motion::{Act, Motion, Offset, Side, Stop, Taper, Travel};

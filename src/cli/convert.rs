@@ -325,7 +325,11 @@ impl Made {
             To::Gcode => {
                 let Gcode { to_dialect, number_step, suppress } = &options.gcode;
                 let dialect = dialects::load(to_dialect.as_deref(), "written")?;
-                let layout = gcode::Layout { number_step: *number_step, suppress: *suppress };
+                let layout = gcode::Layout {
+                    number_step: *number_step,
+                    suppress: *suppress,
+                    ..gcode::Layout::default()
+                };
                 Self::Gcode { writer: Box::new(gcode::Writer::with_layout(dialect, layout)), motions: 0 }
             }
             To::Svg | To::Png => {

@@ -12,17 +12,84 @@ use dripfeed::geometry::Element;
 use dripfeed::motion::{Act, Motion, Stop};
 use dripfeed::place::Spot;
 
-const ITERATIONS: usize = 200_000;
+const ITERATIONS: usize = 4000;
 /// What is taken of a program: repeats of repeats go on for ever.
 const MOTIONS: usize = 2000;
 
 /// Pieces that make and break programs.
 const PIECES: [&str; 72] = [
-    "\n", "\n", "\n", "\r\n", "\r", " ", "G01", "G1", "G0", "G02", "G03", "G3", "X1.", "X-2.5", "Y3.", "Y0.", "Y", "X0", "X5",
-    "I1.", "I-2.5", "J", "J3.", "J-.5", "R5.", "R-4.", "G90", "G91", "G92", "G20", "G21", "G40", "G41", "G42", "D1", "H1",
-    "H001=110", "H1=.5+H2", "A1.5", "T2.", "G51", "G50", "U1.", "V-1.", "K0.", "L0.", ":", "M00", "M02", "\nM02\n", "M98P1",
-    "M98 P2 L3", "M99", "\nN1", "\nN2 ", "\nO1\n", "O2", "%", "(remark)", ";rest\n", "(", "/", "#1", "[", "G65", "E1", "S2", "F3.",
-    "G4X1.", "1e3", "99999999999999999999", "\u{4e2d}",
+    "\n",
+    "\n",
+    "\n",
+    "\r\n",
+    "\r",
+    " ",
+    "G01",
+    "G1",
+    "G0",
+    "G02",
+    "G03",
+    "G3",
+    "X1.",
+    "X-2.5",
+    "Y3.",
+    "Y0.",
+    "Y",
+    "X0",
+    "X5",
+    "I1.",
+    "I-2.5",
+    "J",
+    "J3.",
+    "J-.5",
+    "R5.",
+    "R-4.",
+    "G90",
+    "G91",
+    "G92",
+    "G20",
+    "G21",
+    "G40",
+    "G41",
+    "G42",
+    "D1",
+    "H1",
+    "H001=110",
+    "H1=.5+H2",
+    "A1.5",
+    "T2.",
+    "G51",
+    "G50",
+    "U1.",
+    "V-1.",
+    "K0.",
+    "L0.",
+    ":",
+    "M00",
+    "M02",
+    "\nM02\n",
+    "M98P1",
+    "M98 P2 L3",
+    "M99",
+    "\nN1",
+    "\nN2 ",
+    "\nO1\n",
+    "O2",
+    "%",
+    "(remark)",
+    ";rest\n",
+    "(",
+    "/",
+    "#1",
+    "[",
+    "G65",
+    "E1",
+    "S2",
+    "F3.",
+    "G4X1.",
+    "1e3",
+    "99999999999999999999",
+    "\u{4e2d}",
 ];
 
 #[test]
@@ -212,7 +279,11 @@ fn words_are_told(dialect: &Dialect, text: &[u8]) {
     let mut end = u64::MAX;
     for motion in motions.take(MOTIONS) {
         match motion {
-            Ok(Motion { act: Act::Comment(t) | Act::Header(t) | Act::Word(t) | Act::Unknown(t), spot, .. }) => {
+            Ok(Motion {
+                act: Act::Comment(t) | Act::Header(t) | Act::Word(t) | Act::Unknown(t),
+                spot,
+                ..
+            }) => {
                 let line = told.entry(spot.line).or_default();
                 line.extend_from_slice(&t);
                 line.push(b'\n');
