@@ -350,7 +350,11 @@ impl Made {
                 let Gcode { to_dialect, number_step, suppress } = &options.gcode;
                 let dialect =
                     dialects::load(to_dialect.as_deref().or(options.reading.dialect.as_deref()), "written")?;
-                let layout = gcode::Layout { number_step: *number_step, suppress: *suppress };
+                let layout = gcode::Layout {
+                    number_step: *number_step,
+                    suppress: *suppress,
+                    ..gcode::Layout::default()
+                };
                 Self::Gcode { writer: Box::new(gcode::Writer::with_layout(dialect, layout)), motions: 0 }
             }
             To::Dxf => Self::Dxf { writer: DxfWriter::new(), motions: 0 },
