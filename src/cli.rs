@@ -11,14 +11,19 @@ macro_rules! say {
     }};
 }
 
+mod check;
 mod connection;
 #[cfg(feature = "demo")]
 mod demo;
+mod dialects;
 mod failure;
 mod feeding;
 mod generate;
 mod jobs;
+mod kind;
 mod machines;
+mod motions;
+mod plot;
 mod question;
 mod resume;
 mod screen;
@@ -46,6 +51,8 @@ enum Command {
     #[cfg(feature = "demo")]
     Demo(demo::Options),
     Generate(generate::Options),
+    Check(check::Options),
+    Plot(plot::Options),
     Send(send::Options),
     Resume(resume::Options),
     Jobs(jobs::Options),
@@ -69,6 +76,8 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "demo")]
         Command::Demo(options) => demo::run(&options),
         Command::Generate(options) => generate::run(options),
+        Command::Check(options) => check::run(&options),
+        Command::Plot(options) => plot::run(&options),
         Command::Send(options) => send::run(options),
         Command::Resume(options) => resume::run(options),
         Command::Jobs(options) => jobs::run(&options),

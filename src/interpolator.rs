@@ -4,10 +4,11 @@
 //! which variant a given control runs, so the variant is a [`Model`], a value of the machine profile, *unverified*
 //! until a calibration cut settles it. The end of a block follows in closed form from `F = x² + y² − R²`, which holds
 //! at every step of an arc, so the cost of a block does not grow with its length; the tests prove the closed form
-//! against stepping. Individual pulses are not here.
+//! against stepping. The single pulses are in [`pulses`].
 
 mod arc;
 mod line;
+pub mod pulses;
 
 use thiserror::Error;
 
@@ -74,6 +75,19 @@ impl Model {
             Motion::Arc(sense, _) => Branch::at(block.signed(), sense)
                 .and_then(|branch| branch.travel(self.bend(), block.g, block.j.0)),
         }
+    }
+}
+
+/// Whether a control of the `rotated` model can run a block to its end: what [`Model::displacement`] finds out, without
+/// working out where that end is. The block's numbers are taken to be within [`COORDINATE_MAX`].
+#[must_use]
+#[inline]
+pub fn comes_to_an_end(block: &Block) -> bool {
+    match block.motion {
+        // A line that steps its counting axis at all uses up any count; an arc of more than a micron goes round for ever.
+        Motion::Line(_) if block.counted().0 != 0 => true,
+        Motion::Arc(..) if block.x.0 + block.y.0 > 1 => true,
+        Motion::Line(_) | Motion::Arc(..) => Model::Rotated.displacement(block).is_ok(),
     }
 }
 

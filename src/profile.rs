@@ -5,6 +5,7 @@
 
 use std::time::Duration;
 
+use crate::check::Travel;
 use crate::keys::{Document, KeyError, Section};
 use crate::protocol::pacing::{Pace, WINDOW_MAX};
 use crate::tape::{Code, Tape};
@@ -40,6 +41,10 @@ pub struct Profile {
     pub tape: Tape,
     /// How much the control may have accepted and not executed.
     pub buffer_bytes: u64,
+    /// How far the machine travels, where the profile says.
+    pub travel: Travel,
+    /// The most the machine tilts its wire, degrees, where the profile says.
+    pub taper_max_degrees: Option<f64>,
 }
 
 /// Data bits, parity and stop bits.
@@ -136,6 +141,8 @@ impl Profile {
                 trailer: String::new(),
             },
             buffer_bytes: 0,
+            travel: Travel::default(),
+            taper_max_degrees: None,
         };
         profile.apply(GENERIC_ISO)?;
         Ok(profile)
@@ -177,8 +184,9 @@ impl Profile {
     /// Takes over every key the text gives; returns those it does not.
     fn apply(&mut self, text: &str) -> Result<Vec<&'static str>, KeyError> {
         let document = Document::parse(text)?;
-        let sections = document.sections(["machine", "link", "protocol", "tape", "control"])?;
-        let [machine, link, protocol, tape, control] = &sections;
+        let sections =
+            document.sections(["machine", "link", "protocol", "tape", "control", "travel", "taper"])?;
+        let [machine, link, protocol, tape, control, travel, taper] = &sections;
         let mut assumed = Vec::new();
         let mut given = |key: &'static str, is_given: bool| {
             if !is_given {
@@ -245,6 +253,11 @@ impl Profile {
         given("buffer_bytes", buffer.is_some());
         self.buffer_bytes = buffer.unwrap_or(self.buffer_bytes);
 
+        // What a profile does not say of the machine itself is not assumed: it is then not checked.
+        self.travel.x = within(travel, "x_mm", 100_000.0)?.or(self.travel.x);
+        self.travel.y = within(travel, "y_mm", 100_000.0)?.or(self.travel.y);
+        self.taper_max_degrees = within(taper, "max_degrees", 90.0)?.or(self.taper_max_degrees);
+
         for section in &sections {
             section.finish()?;
         }
@@ -296,8 +309,17 @@ fn latency(link: &Section<'_>) -> Result<Option<Option<Duration>>, KeyError> {
     }
 }
 
+/// A positive number up to a limit.
+fn within(section: &Section<'_>, key: &'static str, most: f64) -> Result<Option<f64>, KeyError> {
+    match section.number(key)? {
+        Some(value) if value > 0.0 && value <= most => Ok(Some(value)),
+        Some(_) => Err(section.error(key, format!("`{key}` must be more than 0 and at most {most}"), None)),
+        None => Ok(None),
+    }
+}
+
 /// Every key of a profile with its section.
-const KEYS: [(&str, &str); 14] = [
+const KEYS: [(&str, &str); 17] = [
     ("machine", "name"),
     ("link", "baud"),
     ("link", "framing"),
@@ -312,6 +334,9 @@ const KEYS: [(&str, &str); 14] = [
     ("tape", "leader"),
     ("tape", "trailer"),
     ("control", "buffer_bytes"),
+    ("travel", "x_mm"),
+    ("travel", "y_mm"),
+    ("taper", "max_degrees"),
 ];
 
 #[cfg(test)]
@@ -334,6 +359,14 @@ mod tests {
     }
 
     #[test]
+    fn what_a_machine_can_do_is_known_only_where_it_is_said() {
+        let file = Profile::parse("[travel]\nx_mm = 350\n[taper]\nmax_degrees = 3.5\n").unwrap();
+        assert_eq!(file.profile.travel, Travel { x: Some(350.0), y: None });
+        assert_eq!(file.profile.taper_max_degrees, Some(3.5));
+        assert_eq!(Profile::generic_iso().unwrap().travel, Travel::default());
+    }
+
+    #[test]
     fn impossible_pairs_and_values_are_refused() {
         for text in [
             "[tape]\ncode = \"iso\"\n",
@@ -343,6 +376,9 @@ mod tests {
             "[protocol]\nwindow = 99\n",
             "[tape]\nleader = \"?\"\n",
             "[prtocol]\n",
+            "[travel]\nx_mm = 0\n",
+            "[travel]\nz_mm = 100\n",
+            "[taper]\nmax_degrees = 91\n",
         ] {
             assert!(Profile::parse(text).is_err(), "{text}");
         }

@@ -34,12 +34,16 @@ pub(super) enum Exit {
     Control = 6,
     /// Stopped by the operator, resumable.
     Stopped = 7,
+    /// A check found warnings only.
+    Warnings = 8,
 }
 
 /// A command that did not do what it was asked.
 #[derive(Debug)]
 pub(super) struct Failure {
     exit: Option<Exit>,
+    /// What stands before the message, `error:` if nothing else is said.
+    word: Option<String>,
     message: String,
     place: Option<(String, Place)>,
     help: Option<String>,
@@ -49,7 +53,7 @@ pub(super) struct Failure {
 
 impl Failure {
     pub(super) fn new(exit: Exit, message: impl Into<String>) -> Self {
-        Self { exit: Some(exit), message: message.into(), place: None, help: None, resume: None }
+        Self { exit: Some(exit), word: None, message: message.into(), place: None, help: None, resume: None }
     }
 
     pub(super) fn help(mut self, help: impl Into<String>) -> Self {
@@ -59,6 +63,21 @@ impl Failure {
 
     pub(super) fn at(mut self, file: &str, place: Place) -> Self {
         self.place = Some((file.to_owned(), place));
+        self
+    }
+
+    /// An exit code whose reasons have been told already.
+    pub(super) fn told(exit: Exit) -> Self {
+        Self::silent(Some(exit))
+    }
+
+    fn silent(exit: Option<Exit>) -> Self {
+        Self { exit, word: None, message: String::new(), place: None, help: None, resume: None }
+    }
+
+    /// Says what it is instead of `error:`, such as `warning[no-end]:`.
+    pub(super) fn called(mut self, word: String) -> Self {
+        self.word = Some(word);
         self
     }
 
@@ -75,7 +94,7 @@ impl Failure {
     /// From a failed write to standard output: a closed pipe is no failure.
     pub(super) fn output(error: io::Error) -> Self {
         if error.kind() == io::ErrorKind::BrokenPipe {
-            return Self { exit: None, message: String::new(), place: None, help: None, resume: None };
+            return Self::silent(None);
         }
         Self::new(Exit::Ours, format!("cannot write to standard output: {error}"))
     }
@@ -123,19 +142,23 @@ impl Failure {
     /// Prints the failure and returns its exit code.
     pub(super) fn report(&self) -> ExitCode {
         let Some(exit) = self.exit else { return ExitCode::SUCCESS };
+        if self.message.is_empty() {
+            return ExitCode::from(exit as u8);
+        }
         let mut error = io::stderr().lock();
         // Nobody is left to tell when standard error is closed too.
         let _ = error.write_all(self.render().as_bytes());
         ExitCode::from(exit as u8)
     }
 
-    fn render(&self) -> String {
+    /// The failure as a person reads it.
+    pub(super) fn render(&self) -> String {
         let mut theme = if io::stderr().is_terminal() {
             GraphicalTheme::unicode()
         } else {
             GraphicalTheme::unicode_nocolor()
         };
-        theme.characters.error = "error:".to_owned();
+        theme.characters.error = self.word.clone().unwrap_or_else(|| "error:".to_owned());
         let handler = GraphicalReportHandler::new_themed(theme).with_wrap_lines(false).with_context_lines(0);
         let mut text = String::new();
         // Writing into a string cannot fail.

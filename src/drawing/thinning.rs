@@ -56,6 +56,12 @@ impl Thinning {
         }
     }
 
+    /// How many points have been kept so far; those not yet decided on come on top.
+    #[must_use]
+    pub fn kept_count(&self) -> usize {
+        self.kept.len()
+    }
+
     /// Ends the trace and returns the points kept, the first and the last of the trace among them.
     #[must_use]
     pub fn finish(mut self) -> Vec<(i64, i64)> {

@@ -236,6 +236,73 @@ fn the_exact_model_lies_on_the_true_circle() {
     assert!(compared > 10_000, "only {compared} arcs compared");
 }
 
+#[test]
+fn the_pulses_of_a_block_end_where_the_closed_form_says_and_never_jump() {
+    let mut dice = Dice(0x5eed_0004);
+    let (mut stepped, mut faults) = (0u64, 0u32);
+    for n in 0..100_000 {
+        let block = random_block(&mut dice, 400.0);
+        let model = Model::ALL[n % 4];
+        let (pulses, end) = (model.pulses(&block), model.displacement(&block));
+        let (Ok(pulses), Ok(end)) = (&pulses, &end) else {
+            assert_eq!(pulses.as_ref().err(), end.as_ref().err(), "{block:?} under {model:?}");
+            faults += 1;
+            continue;
+        };
+        let mut at = Position::default();
+        for pulse in pulses.clone() {
+            let way = pulse - at;
+            assert_eq!(way.x.0.abs() + way.y.0.abs(), 1, "{block:?} under {model:?}");
+            at = pulse;
+            stepped += 1;
+        }
+        assert_eq!(at, *end, "block {n}: {block:?} under {model:?}");
+    }
+    assert!(stepped > 1_000_000 && faults > 100, "{stepped} pulses, {faults} faults");
+}
+
+#[test]
+fn the_pulses_are_those_of_the_method_s_own_examples() {
+    let steps = |block: Block| -> Vec<(i64, i64)> {
+        let mut at = Position::default();
+        let pulses = Model::Rotated.pulses(&block).unwrap();
+        pulses
+            .map(|pulse| {
+                let way = pulse - at;
+                at = pulse;
+                (way.x.0, way.y.0)
+            })
+            .collect()
+    };
+    let (left, right, up, down) = ((-1, 0), (1, 0), (0, 1), (0, -1));
+    let quarter = |x, y, sense, j| Block::arc(Position::new(x, y), sense, Axis::X, Micrometres(j));
+    assert_eq!(steps(quarter(4, 0, Sense::CounterClockwise, 4)), [left, up, up, up, left, up, left, left]);
+    let clockwise = steps(quarter(0, 6, Sense::Clockwise, 6));
+    assert_eq!(clockwise[..8], [down, right, right, right, right, down, right, down]);
+    assert_eq!(steps(Block::line(Position::new(2, 2))), [right, up, right, up]);
+}
+
+#[test]
+fn the_pulses_of_each_model_stay_within_1_5_um_of_the_true_curve() {
+    let mut dice = Dice(0x5eed_0005);
+    for n in 0..4000 {
+        let block = random_block(&mut dice, 3000.0);
+        let model = Model::ALL[n % 4];
+        let Motion::Arc(..) = block.motion else { continue };
+        let Ok(pulses) = model.pulses(&block) else { continue };
+        let start = block.signed();
+        let radius = ((start.x.0 * start.x.0 + start.y.0 * start.y.0) as f64).sqrt();
+        if radius < 5.0 {
+            continue;
+        }
+        for pulse in pulses {
+            let seen = pulse + start;
+            let off = ((seen.x.0 * seen.x.0 + seen.y.0 * seen.y.0) as f64).sqrt() - radius;
+            assert!(off.abs() < 1.5, "{off} µm: {block:?} under {model:?}");
+        }
+    }
+}
+
 fn walk_text(block: Block, model: Model) -> (i64, i64) {
     let end = model.displacement(&block).unwrap();
     (end.x.0, end.y.0)
@@ -273,4 +340,44 @@ fn a_block_that_can_never_end_is_a_fault() {
     }
     let centre = Block::arc(Position::new(1, 0), Sense::CounterClockwise, Axis::Y, Micrometres(3));
     assert_eq!(Model::Rotated.displacement(&centre), Err(Fault::Centre));
+}
+
+/// The quick question and the full answer agree: on every small block, and on large ones at random.
+#[test]
+fn a_block_comes_to_an_end_exactly_where_its_end_can_be_worked_out() {
+    let agree = |block: &Block| {
+        assert_eq!(comes_to_an_end(block), Model::Rotated.displacement(block).is_ok(), "{block:?}");
+    };
+    let quadrants = [Quadrant::First, Quadrant::Second, Quadrant::Third, Quadrant::Fourth];
+    let motions: Vec<Motion> = quadrants
+        .into_iter()
+        .flat_map(|q| {
+            let arcs = [Sense::Clockwise, Sense::CounterClockwise].map(|sense| Motion::Arc(sense, q));
+            [Motion::Line(q), arcs[0], arcs[1]]
+        })
+        .collect();
+    let blocks = |x: i64, y: i64, j: i64| {
+        let [x, y, j] = [x, y, j].map(Micrometres);
+        let both = [Axis::X, Axis::Y].into_iter();
+        both.flat_map(|g| motions.iter().map(move |&motion| Block { x, y, j, g, motion })).collect::<Vec<_>>()
+    };
+    let mut refused = 0;
+    for n in 0..6 * 6 * 12 {
+        for block in blocks(n % 6, n / 6 % 6, n / 36) {
+            agree(&block);
+            refused += u32::from(!comes_to_an_end(&block));
+        }
+    }
+    assert!(refused > 100, "blocks without an end are among them: {refused}");
+    let mut state = 1u64;
+    let mut random = |most: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as i64 % most as i64
+    };
+    for n in 0..20_000 {
+        let most = [3, 100, 1_000_000, 1_000_000_000][n % 4];
+        for block in blocks(random(most), random(most), random(1_000_000)) {
+            agree(&block);
+        }
+    }
 }

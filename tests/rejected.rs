@@ -1,0 +1,152 @@
+//! Programs with one thing wrong each, and what `dripfeed check` says about them.
+//!
+//! The first lines of a file in `tests/rejected` are, as comments of its format, exactly what is found in it, in order:
+//! `severity[code] line:column message`. A line `with …` behind them holds options. The file of the same name in
+//! `tests/accepted` is its twin with the fault mended: nothing is found in it.
+
+#[path = "gear/binary.rs"]
+mod binary;
+
+use std::path::{Path, PathBuf};
+
+use binary::Run;
+
+fn directory(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name)
+}
+
+fn programs(name: &str) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(directory(name))
+        .expect("the programs are there")
+        .map(|entry| entry.expect("a file").path())
+        .filter(|path| path.extension().is_some_and(|suffix| suffix != "toml"))
+        .collect();
+    files.sort();
+    assert!(files.len() > 10, "only {} programs in tests/{name}", files.len());
+    files
+}
+
+fn comments(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().map_while(|line| line.strip_prefix("; "))
+}
+
+fn check(file: &Path, text: &str, more: &[&str]) -> Run {
+    let mut command = binary::command(&["check", &file.to_string_lossy()]);
+    command.current_dir(directory("rejected"));
+    for words in comments(text).filter_map(|comment| comment.strip_prefix("with ")) {
+        command.args(words.split_whitespace());
+    }
+    let output = command.args(more).output().expect("the program under test runs");
+    Run {
+        code: output.status.code(),
+        stdout: String::from_utf8(output.stdout).expect("text"),
+        stderr: String::from_utf8(output.stderr).expect("text"),
+    }
+}
+
+/// The findings as the heads of the files spell them.
+fn findings(run: &Run) -> Vec<String> {
+    let report: serde_json::Value = serde_json::from_str(&run.stdout).expect("one JSON object");
+    let text = |value: &serde_json::Value| value.as_str().expect("a text").to_owned();
+    let all = report["diagnostics"].as_array().expect("an array").iter();
+    all.map(|d| {
+        assert!(!text(&d["help"]).is_empty(), "{d} has no help");
+        format!(
+            "{}[{}] {}:{} {}",
+            text(&d["severity"]),
+            text(&d["code"]),
+            d["line"],
+            d["column"],
+            text(&d["message"])
+        )
+    })
+    .collect()
+}
+
+#[test]
+fn each_rejected_program_is_told_what_its_first_lines_say() {
+    let mut different = Vec::new();
+    for file in programs("rejected") {
+        let text = std::fs::read_to_string(&file).expect("a program");
+        let expected: Vec<&str> =
+            comments(&text).filter(|c| c.starts_with("error[") || c.starts_with("warning[")).collect();
+        assert!(!expected.is_empty(), "{} expects nothing", file.display());
+        let run = check(&file, &text, &["--json"]);
+        let found = findings(&run);
+        let exit = if expected.iter().any(|finding| finding.starts_with("error")) { 3 } else { 8 };
+        if found != expected || run.code != Some(exit) {
+            different.push(format!("{}: exit {:?}\n  {}", file.display(), run.code, found.join("\n  ")));
+        }
+    }
+    assert!(different.is_empty(), "{}", different.join("\n"));
+}
+
+#[test]
+fn each_has_a_twin_in_which_nothing_is_found() {
+    let accepted = programs("accepted");
+    for file in programs("rejected") {
+        let twin = directory("accepted").join(file.file_name().expect("a name"));
+        assert!(accepted.contains(&twin), "{} has no twin", file.display());
+    }
+    for file in accepted {
+        let text = std::fs::read_to_string(&file).expect("a program");
+        let run = check(&file, &text, &["--json"]);
+        assert_eq!((findings(&run), run.code), (Vec::new(), Some(0)), "{}", file.display());
+    }
+}
+
+#[test]
+fn findings_are_shown_with_caret_and_help_and_nothing_of_them_on_standard_output() {
+    let file = directory("rejected").join("syntax.3b");
+    let text = std::fs::read_to_string(&file).expect("a program");
+    let run = check(&file, &text, &[]);
+    for (message, line) in comments(&text).zip(5..) {
+        let (word, message) = message.split_once(' ').expect("two words");
+        let message = message.split_once(' ').expect("a place and a message").1;
+        assert!(run.stderr.contains(&format!("{word}: {message}")), "{}", run.stderr);
+        assert!(run.stderr.contains(&format!("syntax.3b:{line}:")), "{}", run.stderr);
+    }
+    assert_eq!(run.stderr.matches("help:").count(), 3);
+    assert!(run.stdout.contains("3 errors") && !run.stdout.contains("expected"));
+}
+
+#[test]
+fn generated_gears_are_in_order() {
+    for words in [
+        vec!["generate", "gear"],
+        vec!["generate", "gear", "--repeat", "3"],
+        vec!["generate", "gear", "--direction", "ccw", "--lead-in", "-0.6,12.5"],
+        vec!["generate", "gear", "--lead-in", "none", "--teeth", "61", "--module", "0.6"],
+        vec!["generate", "gear", "--offset", "-0.05", "--tip-radius", "0.2"],
+    ] {
+        let program = binary::command(&words).output().expect("a gear");
+        assert!(program.status.success(), "{words:?}");
+        let file = tempfile::Builder::new().suffix(".3b").tempfile().expect("a file");
+        std::fs::write(file.path(), &program.stdout).expect("a program");
+        let run = check(file.path(), "", &["--json"]);
+        assert_eq!((findings(&run), run.code), (Vec::new(), Some(0)), "{words:?}");
+    }
+}
+
+#[test]
+fn standard_input_is_checked_as_a_file_is() {
+    use std::io::Write as _;
+    use std::process::Stdio;
+    let mut child = binary::command(&["check", "-", "--from", "3b"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program under test runs");
+    child
+        .stdin
+        .take()
+        .expect("a pipe")
+        .write_all(b"B9900B0B9900GXL1\nB9900B0B39600GYNR1\n")
+        .expect("written");
+    let output = child.wait_with_output().expect("it ends");
+    let said = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(8));
+    assert!(said.contains("warning[no-end]: no word ends the program"), "{said}");
+    assert!(said.contains("B9900B0B39600GYNR1"), "the line is shown: {said}");
+}
