@@ -14,6 +14,7 @@
 //! Taper is passed on: it tilts the wire about the path and does not move it.
 
 pub mod local;
+pub mod put_on;
 mod run;
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ use thiserror::Error;
 use crate::formats::ReadError;
 use crate::geometry::offset::{Corners, Unreached};
 use crate::geometry::{Element, Point};
+use crate::motion::runs::ContourError;
 use crate::motion::{Act, Motion, Offset, Side, Stop};
 use crate::place::Spot;
 use run::Run;
@@ -77,6 +79,28 @@ pub enum CompensationError {
     },
 }
 
+impl From<ContourError> for CompensationError {
+    fn from(error: ContourError) -> Self {
+        match error {
+            ContourError::Read(error) => Self::Read(error),
+            ContourError::Contour { message, block, spot, help } => {
+                Self::Program { message, block, spot, help }
+            }
+        }
+    }
+}
+
+impl From<CompensationError> for ContourError {
+    fn from(error: CompensationError) -> Self {
+        match error {
+            CompensationError::Read(error) => Self::Read(error),
+            CompensationError::Program { message, block, spot, help } => {
+                Self::Contour { message, block, spot, help }
+            }
+        }
+    }
+}
+
 #[derive(Debug)]
 enum State {
     /// The numbers are the wire's.
@@ -99,7 +123,11 @@ struct On {
     spot: Spot,
 }
 
-impl<I: Iterator<Item = Result<Motion, ReadError>>> Compensated<I> {
+impl<I, E> Compensated<I>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<CompensationError>,
+{
     /// The wire's path for motions, with what the registers of the control hold, mm; a distance in the motion itself
     /// comes first.
     pub fn new(source: I, registers: BTreeMap<u32, f64>, corners: Corners) -> Self {
@@ -242,7 +270,11 @@ impl<I: Iterator<Item = Result<Motion, ReadError>>> Compensated<I> {
     }
 }
 
-impl<I: Iterator<Item = Result<Motion, ReadError>>> Iterator for Compensated<I> {
+impl<I, E> Iterator for Compensated<I>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<CompensationError>,
+{
     type Item = Result<Motion, CompensationError>;
 
     fn next(&mut self) -> Option<Self::Item> {
