@@ -9,8 +9,12 @@ mod compensation;
 mod contours;
 #[path = "offset/formulas.rs"]
 mod formulas;
+#[path = "offset/leads.rs"]
+mod leads;
 #[path = "offset/measure.rs"]
 mod measure;
+#[path = "offset/programs.rs"]
+mod programs;
 #[path = "offset/reach.rs"]
 mod reach;
 #[path = "offset/sampling.rs"]

@@ -16,7 +16,7 @@ use crate::measure::{Inside, distance, samples};
 const UM: f64 = 1e-3;
 
 /// The contour begun in the middle of one of its straights, so that the wire leads in to a smooth place.
-fn begun_on_a_straight(path: &Path) -> Path {
+pub(crate) fn begun_on_a_straight(path: &Path) -> Path {
     let longest = (0..path.elements().len())
         .filter(|&n| matches!(path.elements()[n], Element::Line { .. }))
         .max_by(|&a, &b| path.elements()[a].length().total_cmp(&path.elements()[b].length()))
