@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use dripfeed::compensation::{Compensated, CompensationError, Fate, Warning};
 use dripfeed::formats::ReadError;
-use dripfeed::geometry::offset::{Corners, offset};
+use dripfeed::geometry::offset::{Corners, Origin, offset};
 use dripfeed::geometry::{Element, Path, Point, Sense, Vector};
 use dripfeed::motion::{Act, Motion, Offset, Side, Travel};
 use dripfeed::place::Spot;
@@ -94,9 +94,11 @@ fn with_arcs_to_lead_in_and_out_the_wire_keeps_its_distance_or_the_program_is_re
                     done += 1;
                     assert!(whole.unreached.is_empty(), "{kind} {seed} {side:?}: {:?}", whole.unreached);
                     let ways = ways(&made, elements.len());
-                    for point in ways.iter().flat_map(|way| samples(way, 9)).map(|(point, _)| point) {
-                        let off = distance_from(&elements, point) - by;
-                        assert!(off.abs() < UM || distance(&path, point) > by, "{kind} {seed} {off}");
+                    // Where the arcs lead in the waste is nothing to do with the contour.
+                    let beside = &ways[1..ways.len() - 1];
+                    for point in beside.iter().flat_map(|way| samples(way, 9)).map(|(point, _)| point) {
+                        let off = distance(&path, point) - by;
+                        assert!(off.abs() < UM, "{kind} {seed} {side:?} by {by}: off by {off}");
                     }
                     for way in &whole.outlines[0].path.elements()[1..] {
                         let off = distance_from(&ways, way.start());
@@ -106,13 +108,15 @@ fn with_arcs_to_lead_in_and_out_the_wire_keeps_its_distance_or_the_program_is_re
                 Err(error) => {
                     refused += 1;
                     let CompensationError::Program { block, .. } = error else { panic!("{error}") };
-                    let missed = whole.unreached.iter().any(|part| {
-                        // The element is one of the part, or has what stands around it.
-                        let element = block as usize - 3;
-                        let count = path.elements().len();
+                    let element = block as usize - 3;
+                    let count = path.elements().len();
+                    // The element is one of a part not reached, or next to it; or so little of it is not that no one is told.
+                    let is_told = whole.unreached.iter().any(|part| {
                         let steps = (part.last + count - part.first) % count;
                         (element + count + 1 - part.first) % count <= steps + 2
                     });
+                    let mut origins = whole.outlines.iter().flat_map(|outline| &outline.origins);
+                    let missed = is_told || !origins.any(|origin| *origin == Origin::Element(element));
                     assert!(missed, "{kind} {seed} {side:?}: {error} in {block}: {:?}", whole.unreached);
                 }
             }
@@ -156,10 +160,11 @@ fn a_neck_that_no_corner_shows_is_refused_with_the_offset_that_would_pass() {
 #[test]
 fn a_run_with_a_tab_left_standing_tells_what_it_cuts_into_and_nothing_else() {
     let (mut clean, mut told) = (0, 0);
-    for seed in 0..300 {
-        let (kind, path) = contours::any(seed);
+    for seed in 0..400 {
+        // Every other one a dumbbell: its neck shows at no corner.
+        let (kind, path) = contours::any(if seed % 2 == 0 { 2 * seed + 2 } else { seed });
         let path = begun_on_a_straight(&path);
-        let by = Dice::new(seed + 277).between(0.02, 0.4);
+        let by = Dice::new(seed + 277).between(0.02, 0.8);
         // The last piece of straight stays.
         let elements = &path.elements()[..path.elements().len() - 1];
         for side in [Side::Left, Side::Right] {
@@ -183,5 +188,5 @@ fn a_run_with_a_tab_left_standing_tells_what_it_cuts_into_and_nothing_else() {
             }
         }
     }
-    assert!(clean > 100 && told > 5, "{clean} {told}");
+    assert!(clean > 200 && told > 8, "{clean} {told}");
 }
