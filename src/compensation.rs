@@ -9,7 +9,8 @@
 //! A closed contour is offset as a whole ([`crate::geometry::offset`]), so that elements the wire cannot enter are
 //! left out, and told as [`Warning`]s. Where it begins in an inside corner, the wire begins where its ways meet: a
 //! control would cut into the corner there. An open run, as one with arcs for lead-in and lead-out or with an overcut,
-//! is offset corner by corner ([`local`]) as a control does, and refused where an element of it vanishes.
+//! is offset corner by corner ([`local`]) as a control does, and refused where an element of it vanishes or the outline
+//! in it has a place that the wire cannot enter.
 //!
 //! Taper is passed on: it tilts the wire about the path and does not move it.
 
@@ -21,6 +22,7 @@ mod tests;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
+use std::fmt;
 
 use thiserror::Error;
 
@@ -47,7 +49,7 @@ pub struct Compensated<I> {
     is_over: bool,
 }
 
-/// A part of a contour that the wire cannot enter and passes by.
+/// A part of a contour that the wire cannot enter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warning {
     /// The block of the first element that is not touched.
@@ -56,6 +58,32 @@ pub struct Warning {
     pub spot: Spot,
     /// What is not touched; its indices count the elements from the contour's first.
     pub unreached: Unreached,
+    /// What becomes of it.
+    pub fate: Fate,
+}
+
+/// What becomes of a part that the wire cannot enter.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Fate {
+    /// The wire passes it by: material stays there.
+    PassedBy,
+    /// The wire cuts into it, in an open run led corner by corner.
+    CutInto,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Unreached { at, largest, .. } = self.unreached;
+        let what = match self.fate {
+            Fate::PassedBy => "the wire cannot enter the contour at",
+            Fate::CutInto => "the wire cuts into the contour at",
+        };
+        let would = match self.fate {
+            Fate::PassedBy => "enter",
+            Fate::CutInto => "pass",
+        };
+        write!(f, "{what} X{:.4} Y{:.4}; an offset of at most {largest:.4} mm would {would}", at.x, at.y)
+    }
 }
 
 /// Why a program has no path of the wire.

@@ -15,8 +15,8 @@ use dripfeed::geometry::offset::{Corners, offset};
 use dripfeed::geometry::{Element, Path, Sense};
 use dripfeed::shapes::cycloid_gear::{CycloidGear, Direction, Trim};
 
-const ROUNDS: usize = 11;
-const CALLS: u32 = 400;
+const ROUNDS: usize = 201;
+const CALLS: u32 = 20;
 
 fn main() {
     // `cargo test --all-targets` runs this too, to see that it builds.
