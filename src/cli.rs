@@ -18,6 +18,7 @@ mod failure;
 mod feeding;
 mod generate;
 mod jobs;
+mod kind;
 mod machines;
 mod question;
 mod resume;

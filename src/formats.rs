@@ -6,6 +6,7 @@
 pub mod four_b;
 pub mod gcode;
 pub mod lines;
+pub mod losses;
 pub mod three_b;
 
 use std::borrow::Cow;

@@ -77,6 +77,19 @@ impl Model {
     }
 }
 
+/// Whether a control of the `rotated` model can run a block to its end: what [`Model::displacement`] finds out, without
+/// working out where that end is. The block's numbers are taken to be within [`COORDINATE_MAX`].
+#[must_use]
+#[inline]
+pub fn comes_to_an_end(block: &Block) -> bool {
+    match block.motion {
+        // A line that steps its counting axis at all uses up any count; an arc of more than a micron goes round for ever.
+        Motion::Line(_) if block.counted().0 != 0 => true,
+        Motion::Arc(..) if block.x.0 + block.y.0 > 1 => true,
+        Motion::Line(_) | Motion::Arc(..) => Model::Rotated.displacement(block).is_ok(),
+    }
+}
+
 /// Why a block cannot be run to its end.
 #[derive(Clone, Copy, Debug, Eq, Error, PartialEq)]
 #[non_exhaustive]

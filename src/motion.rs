@@ -8,6 +8,9 @@
 //!
 //! How blocks are spelled is `formats`; where a control really stands after them is `interpolator`.
 
+pub mod reverse;
+pub mod runs;
+
 use crate::geometry::Element;
 use crate::place::Spot;
 

@@ -7,9 +7,12 @@ pub mod file;
 
 use std::sync::Arc;
 
+pub use crate::formats::three_b::StopWord;
 use crate::formats::three_b::Style;
 use crate::geometry::{Element, Point};
 use crate::interpolator::Model;
+use crate::motion::{Act, Motion, Stop, Travel};
+use crate::place::Spot;
 use crate::rounding::closed_loop::ClosedLoop;
 use crate::rounding::per_block::PerBlock;
 use crate::rounding::{Aim, Made, Role, Step};
@@ -24,33 +27,6 @@ pub enum Rounding {
     ClosedLoop,
     /// Every block by itself, as in the 1990 paper.
     PerBlock,
-}
-
-/// What a program ends with.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum StopWord {
-    /// `DD`: end of program.
-    #[default]
-    DD,
-    /// `D`: pause.
-    D,
-    /// `E`: end.
-    E,
-    /// No stop word.
-    None,
-}
-
-impl StopWord {
-    /// The word as it is written.
-    #[must_use]
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::DD => "DD",
-            Self::D => "D",
-            Self::E => "E",
-            Self::None => "",
-        }
-    }
 }
 
 /// A part with all its values.
@@ -224,6 +200,18 @@ impl Prepared {
             })
         };
         lead_in.into_iter().chain((0..self.part.repeat).flat_map(once))
+    }
+
+    /// What the program makes the machine do, in no format yet, its end included.
+    pub fn motions(&self) -> impl Iterator<Item = Motion> + Send + use<> {
+        let moves = self.steps().map(|step| Act::Move {
+            travel: Travel::Cut,
+            element: step.element,
+            upper: None,
+            flag: None,
+        });
+        let acts = moves.chain(std::iter::once(Act::Stop(Stop::End)));
+        (1..).zip(acts).map(|(block, act)| Motion { act, block, spot: Spot::default() })
     }
 
     /// The blocks of the whole program, one at a time.

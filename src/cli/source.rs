@@ -7,43 +7,16 @@
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
-use clap::ValueEnum;
-
 use super::failure::{Exit, Failure};
+use super::kind::Kind;
 use crate::journal::history::History;
 use crate::journal::resume;
 use crate::part::Prepared;
 use crate::part::file::PartFile;
 use crate::program::{self, Counted, Generated, Line, Program, Segment, Segments};
-
-/// What a source is.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
-pub(super) enum Kind {
-    /// A 3B program
-    #[value(name = "3b")]
-    ThreeB,
-    /// A part file, generated on demand
-    Part,
-}
-
-impl Kind {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::ThreeB => "3b",
-            Self::Part => "part",
-        }
-    }
-
-    pub(super) fn named(name: &str) -> Option<Self> {
-        match name {
-            "3b" => Some(Self::ThreeB),
-            "part" => Some(Self::Part),
-            _ => None,
-        }
-    }
-}
 
 /// A checked source.
 #[derive(Debug)]
@@ -109,8 +82,8 @@ impl Source {
     pub(super) fn open(word: &str, from: Option<Kind>) -> Result<Self, Failure> {
         if word == "-" {
             return match from {
-                Some(Kind::ThreeB) => Ok(Self::stream(word)),
                 Some(Kind::Part) => Self::part("-", Path::new("-")),
+                Some(kind) => Self::stream(word, kind),
                 None => {
                     Err(Failure::new(Exit::Usage, "what comes from standard input must be named with --from")
                         .help("for example `--from 3b`"))
@@ -121,21 +94,21 @@ impl Source {
         if metadata.is_dir() {
             return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program")));
         }
-        let kind = match from.or_else(|| kind_of(word, metadata.is_file())) {
+        let kind = match from.or_else(|| Kind::of(word, metadata.is_file())) {
             Some(kind) => kind,
             None => {
                 return Err(Failure::new(
                     Exit::Usage,
                     format!("what {word} is cannot be told from its name"),
                 )
-                .help("name a .3b program or a .toml part file, or say --from 3b or --from part"));
+                .help("name a .3b, .4b or .nc program or a .toml part file, or say what it is with --from"));
             }
         };
         let path = std::path::absolute(word).map_err(|error| unreadable(word, &error))?;
         match kind {
             Kind::Part => Self::part(word, &path),
-            Kind::ThreeB if metadata.is_file() => Self::file(word, path),
-            Kind::ThreeB => Ok(Self::stream(&path.display().to_string())),
+            kind if metadata.is_file() => Self::file(word, path, kind),
+            kind => Self::stream(&path.display().to_string(), kind),
         }
     }
 
@@ -151,9 +124,11 @@ impl Source {
         }
     }
 
-    fn stream(path: &str) -> Self {
+    fn stream(path: &str, kind: Kind) -> Result<Self, Failure> {
+        // A drawing is refused before it is waited for.
+        text_program(path, kind, io::empty())?;
         let path = path.to_owned();
-        Self { path, kind: Kind::ThreeB, digest: String::new(), size: None, body: Body::Stream }
+        Ok(Self { path, kind, digest: String::new(), size: None, body: Body::Stream })
     }
 
     fn part(word: &str, path: &Path) -> Result<Self, Failure> {
@@ -168,12 +143,12 @@ impl Source {
         })
     }
 
-    /// Checks a 3B file whole.
-    fn file(word: &str, path: PathBuf) -> Result<Self, Failure> {
+    /// Checks a program file whole.
+    fn file(word: &str, path: PathBuf, kind: Kind) -> Result<Self, Failure> {
         let file = File::open(&path).map_err(|error| unreadable(word, &error))?;
         let metadata = file.metadata().map_err(|error| unreadable(word, &error))?;
-        let mut hashing = Hashing { file, hasher: blake3::Hasher::new(), bytes: 0 };
-        let mut reader = program::Read::new(BufReader::with_capacity(READ_BUFFER, &mut hashing));
+        let hashing = Arc::new(Mutex::new(Hashing { file, hasher: blake3::Hasher::new(), bytes: 0 }));
+        let mut reader = text_program(word, kind, Shared(Arc::clone(&hashing)))?;
         let (mut size, mut text) = (Size { blocks: 0, lines: 0, bytes: 0 }, Vec::new());
         loop {
             text.clear();
@@ -191,12 +166,13 @@ impl Source {
         if size.blocks == 0 {
             return Err(Failure::new(Exit::Program, format!("{word} holds no block")));
         }
+        let hashing = hashing.lock().unwrap_or_else(PoisonError::into_inner);
         let digest = hashing.hasher.finalize();
         let stamp =
             Stamp { path: path.clone(), bytes: hashing.bytes, modified: metadata.modified().ok(), digest };
         Ok(Self {
             path: path.display().to_string(),
-            kind: Kind::ThreeB,
+            kind,
             digest: digest.to_hex().to_string(),
             size: Some(size),
             body: Body::File(stamp),
@@ -228,11 +204,11 @@ impl Source {
             Body::File(stamp) => {
                 let verified =
                     Verified::open(stamp.clone()).map_err(|error| unreadable(&self.path, &error))?;
-                Box::new(program::Read::new(BufReader::with_capacity(READ_BUFFER, verified)))
+                text_program(&self.path, self.kind, verified)?
             }
-            Body::Stream if self.path == "-" => Box::new(program::Read::new(BufReader::new(io::stdin()))),
+            Body::Stream if self.path == "-" => text_program(&self.path, self.kind, io::stdin())?,
             Body::Stream => {
-                Box::new(program::Read::new(BufReader::new(Later { path: self.path.clone(), file: None })))
+                text_program(&self.path, self.kind, Later { path: self.path.clone(), file: None })?
             }
         })
     }
@@ -275,23 +251,19 @@ impl Source {
     }
 }
 
-/// What the name of a file says it is; failing that, its first bytes. What can be read only once is not looked into.
-fn kind_of(word: &str, is_file: bool) -> Option<Kind> {
-    let path = Path::new(word);
-    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("3b") => Some(Kind::ThreeB),
-        Some("toml") => Some(Kind::Part),
-        _ if !is_file => None,
-        _ => {
-            let mut head = [0; 4096];
-            let count = File::open(path).and_then(|mut file| file.read(&mut head)).ok()?;
-            let head = &head[..count];
-            if head.split(|&b| b == b'\n').any(|line| line.trim_ascii() == b"[part]") {
-                return Some(Kind::Part);
-            }
-            let mut reader = crate::formats::three_b::read::Reader::new(head);
-            // A block within the first lines, with nothing unreadable before it.
-            matches!(reader.next_item(), Ok(Some(_))).then_some(Kind::ThreeB)
+/// The program in a text of a kind.
+fn text_program(
+    word: &str,
+    kind: Kind,
+    text: impl Read + Send + 'static,
+) -> Result<Box<dyn Program>, Failure> {
+    match kind {
+        Kind::ThreeB => Ok(Box::new(program::Read::new(BufReader::with_capacity(READ_BUFFER, text)))),
+        Kind::FourB | Kind::Gcode => Err(Failure::new(Exit::Usage, "not yet")),
+        Kind::Dxf | Kind::Part => {
+            let message = format!("{word} is a drawing: what is fed is a program made from it");
+            Err(Failure::new(Exit::Usage, message)
+                .help("make one with `dripfeed convert`, look at it, and send that"))
         }
     }
 }
@@ -318,11 +290,15 @@ struct Hashing {
     bytes: u64,
 }
 
-impl Read for &mut Hashing {
+/// The file as its reader has it, while the digest stays in reach.
+struct Shared(Arc<Mutex<Hashing>>);
+
+impl Read for Shared {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.file.read(buffer)?;
-        self.hasher.update(&buffer[..count]);
-        self.bytes += count as u64;
+        let mut hashing = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let count = hashing.file.read(buffer)?;
+        hashing.hasher.update(&buffer[..count]);
+        hashing.bytes += count as u64;
         Ok(count)
     }
 }

@@ -23,8 +23,12 @@ pub struct Lines<R> {
     buffer_byte: u64,
     /// Number of the line last given out.
     number: u64,
+    /// Where in the buffer the line last given out stands.
+    line: (usize, usize),
     /// The last line ended with CR: an LF right behind it is the same end.
     after_cr: bool,
+    /// Whether what is buffered holds a CR.
+    has_returns: bool,
     exhausted: bool,
 }
 
@@ -63,7 +67,9 @@ impl<R: Read> Lines<R> {
             to: 0,
             buffer_byte: 0,
             number: 0,
+            line: (0, 0),
             after_cr: false,
+            has_returns: true,
             exhausted: false,
         }
     }
@@ -73,7 +79,40 @@ impl<R: Read> Lines<R> {
     /// # Errors
     ///
     /// When the source fails, is UTF-16, or has a line that is too long.
+    #[inline]
     pub fn next_line(&mut self) -> Result<Option<Line<'_>>, ReadError> {
+        Ok(if self.advance()? { Some(self.line()) } else { None })
+    }
+
+    /// Goes on to the next line; false at the end of the source.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::next_line`].
+    #[inline]
+    pub fn advance(&mut self) -> Result<bool, ReadError> {
+        // Nearly every line ends in what is buffered, and nearly every source knows no CR.
+        if !self.has_returns
+            && let Some(length) = memchr::memchr(b'\n', &self.buffer[self.from..self.to])
+            && length <= LINE_BYTES_MAX
+        {
+            self.line = (self.from, self.from + length);
+            self.from += length + 1;
+            self.number += 1;
+            return Ok(true);
+        }
+        self.advance_slowly()
+    }
+
+    /// The line that was last gone on to.
+    #[inline]
+    #[must_use]
+    pub fn line(&self) -> Line<'_> {
+        let (start, end) = self.line;
+        Line { bytes: &self.buffer[start..end], number: self.number, byte: self.buffer_byte + start as u64 }
+    }
+
+    fn advance_slowly(&mut self) -> Result<bool, ReadError> {
         if self.number == 0 && self.buffer_byte == 0 && self.to == 0 {
             self.open()?;
         }
@@ -95,7 +134,7 @@ impl<R: Read> Lines<R> {
             searched = self.to - self.from;
             if !self.fill()? {
                 if self.from == self.to {
-                    return Ok(None);
+                    return Ok(false);
                 }
                 break self.to;
             }
@@ -107,9 +146,9 @@ impl<R: Read> Lines<R> {
         let start = self.from;
         self.after_cr = self.buffer.get(end) == Some(&b'\r') && end < self.to;
         self.from = (end + 1).min(self.to);
+        self.line = (start, end);
         self.number += 1;
-        let byte = self.buffer_byte + start as u64;
-        Ok(Some(Line { bytes: &self.buffer[start..end], number: self.number, byte }))
+        Ok(true)
     }
 
     /// Looks at the first bytes for a mark that tells the character code.
@@ -145,6 +184,8 @@ impl<R: Read> Lines<R> {
                 }
                 Ok(count) => {
                     self.to += count;
+                    self.has_returns =
+                        self.after_cr || memchr::memchr(b'\r', &self.buffer[..self.to]).is_some();
                     return Ok(true);
                 }
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}

@@ -7,7 +7,9 @@
 //!
 //! What a control *does* with a block is `interpolator`; choosing the numbers is `rounding`; reading is [`read`].
 
+pub mod motions;
 pub mod read;
+pub mod write;
 
 use crate::geometry::Sense;
 use crate::units::{Micrometres, Position};
@@ -141,6 +143,16 @@ impl Block {
         };
         Position::new(sx * self.x.0, sy * self.y.0)
     }
+
+    /// X or Y, whichever lies along the counting axis.
+    #[must_use]
+    #[inline]
+    pub fn counted(&self) -> Micrometres {
+        match self.g {
+            Axis::X => self.x,
+            Axis::Y => self.y,
+        }
+    }
 }
 
 /// The digit of a line: 0° ≤ θ < 90° is 1, and so on round.
@@ -163,6 +175,33 @@ fn arc_quadrant(start: Position, sense: Sense) -> Quadrant {
             (x, y) if x <= 0 && y < 0 => Quadrant::Third,
             _ => Quadrant::Fourth,
         },
+    }
+}
+
+/// The word a program ends with.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum StopWord {
+    /// `DD`: end of program.
+    #[default]
+    DD,
+    /// `D`: pause.
+    D,
+    /// `E`: end.
+    E,
+    /// No stop word.
+    None,
+}
+
+impl StopWord {
+    /// The word as it is written.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::DD => "DD",
+            Self::D => "D",
+            Self::E => "E",
+            Self::None => "",
+        }
     }
 }
 
@@ -272,6 +311,30 @@ mod tests {
     fn a_tie_counts_y_in_quadrants_one_and_three() {
         for (x, y, g) in [(5, 5, Axis::Y), (-5, 5, Axis::X), (-5, -5, Axis::Y), (5, -5, Axis::X)] {
             assert_eq!(Block::line(Position::new(x, y)).g, g);
+        }
+    }
+
+    #[test]
+    fn the_digits_go_round_the_quadrants_with_their_signs() {
+        for (digit, signs) in [(b'1', (1, 1)), (b'2', (-1, 1)), (b'3', (-1, -1)), (b'4', (1, -1))] {
+            let quadrant = Quadrant::from_digit(digit).unwrap();
+            assert_eq!((quadrant.signs(), quadrant.digit()), (signs, digit));
+        }
+        assert_eq!((Quadrant::from_digit(b'0'), Quadrant::from_digit(b'5')), (None, None));
+    }
+
+    #[test]
+    fn inside_a_quadrant_the_digit_gives_back_the_signs_of_the_point() {
+        for (x, y, digit) in [(3, 4, '1'), (-3, 4, '2'), (-3, -4, '3'), (3, -4, '4')] {
+            let point = Position::new(x, y);
+            for (block, letters) in [
+                (Block::line(point), "L"),
+                (Block::arc(point, Sense::Clockwise, Axis::Y, Micrometres(2)), "SR"),
+                (Block::arc(point, Sense::CounterClockwise, Axis::Y, Micrometres(2)), "NR"),
+            ] {
+                assert!(text(Style::default(), &block).ends_with(&format!("GY{letters}{digit}")));
+                assert_eq!(block.signed(), point);
+            }
         }
     }
 }

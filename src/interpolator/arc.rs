@@ -161,11 +161,7 @@ impl Branch {
     /// `quarters` quarter turns. Not positive when that point is not ahead of the start.
     #[must_use]
     pub fn count_to(&self, bend: Bend, g: Axis, quarters: u8, end: (i64, i64)) -> i64 {
-        let top = match bend {
-            Bend::Inward => rise::<false>(self.rr, 1) as f64,
-            Bend::Outward => rise::<true>(self.rr, 1) as f64,
-            Bend::True => (self.rr as f64).sqrt(),
-        };
+        let top = self.top(bend);
         let (mut u, mut v, mut quarter, mut count) = (self.u as f64, self.v as f64, self.quarter, 0.0);
         for _ in 0..quarters {
             count += if self.counts_u(quarter, g) { u } else { top - v };
@@ -174,6 +170,21 @@ impl Branch {
         }
         count += if self.counts_u(quarter, g) { u - end.0 as f64 } else { end.1 as f64 - v };
         count.round() as i64
+    }
+
+    /// The count of a whole turn, along either axis.
+    #[must_use]
+    pub fn turn(&self, bend: Bend) -> f64 {
+        4.0 * self.top(bend)
+    }
+
+    /// The height at which every quadrant but the first is entered.
+    fn top(&self, bend: Bend) -> f64 {
+        match bend {
+            Bend::Inward => rise::<false>(self.rr, 1) as f64,
+            Bend::Outward => rise::<true>(self.rr, 1) as f64,
+            Bend::True => (self.rr as f64).sqrt(),
+        }
     }
 
     /// The quarter (0-3) in which the branch lies.

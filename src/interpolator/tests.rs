@@ -274,3 +274,43 @@ fn a_block_that_can_never_end_is_a_fault() {
     let centre = Block::arc(Position::new(1, 0), Sense::CounterClockwise, Axis::Y, Micrometres(3));
     assert_eq!(Model::Rotated.displacement(&centre), Err(Fault::Centre));
 }
+
+/// The quick question and the full answer agree: on every small block, and on large ones at random.
+#[test]
+fn a_block_comes_to_an_end_exactly_where_its_end_can_be_worked_out() {
+    let agree = |block: &Block| {
+        assert_eq!(comes_to_an_end(block), Model::Rotated.displacement(block).is_ok(), "{block:?}");
+    };
+    let quadrants = [Quadrant::First, Quadrant::Second, Quadrant::Third, Quadrant::Fourth];
+    let motions: Vec<Motion> = quadrants
+        .into_iter()
+        .flat_map(|q| {
+            let arcs = [Sense::Clockwise, Sense::CounterClockwise].map(|sense| Motion::Arc(sense, q));
+            [Motion::Line(q), arcs[0], arcs[1]]
+        })
+        .collect();
+    let blocks = |x: i64, y: i64, j: i64| {
+        let [x, y, j] = [x, y, j].map(Micrometres);
+        let both = [Axis::X, Axis::Y].into_iter();
+        both.flat_map(|g| motions.iter().map(move |&motion| Block { x, y, j, g, motion })).collect::<Vec<_>>()
+    };
+    let mut refused = 0;
+    for n in 0..6 * 6 * 12 {
+        for block in blocks(n % 6, n / 6 % 6, n / 36) {
+            agree(&block);
+            refused += u32::from(!comes_to_an_end(&block));
+        }
+    }
+    assert!(refused > 100, "blocks without an end are among them: {refused}");
+    let mut state = 1u64;
+    let mut random = |most: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as i64 % most as i64
+    };
+    for n in 0..20_000 {
+        let most = [3, 100, 1_000_000, 1_000_000_000][n % 4];
+        for block in blocks(random(most), random(most), random(1_000_000)) {
+            agree(&block);
+        }
+    }
+}

@@ -241,4 +241,11 @@ mod tests {
         let plan = decide(&history(), &program(), from(31), true).unwrap();
         assert_eq!(plan, Plan { from_block: 31, repeated: 10 });
     }
+
+    #[test]
+    fn a_a_changed_source_may_go_on_where_segments_vouch_for_all_that_was_sent() {
+        let changed = Program { same_source: false, ..program() };
+        let vouched = History { horizon: 32, ..history() };
+        assert_eq!(decide(&vouched, &changed, from(20), true), Ok(Plan { from_block: 20, repeated: 13 }));
+    }
 }

@@ -59,19 +59,22 @@ impl TcpLink {
 
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
 
+/// The other side has closed. Whether that shows as an end, a reset or a broken pipe depends on what was still under way.
+fn closed() -> LinkError {
+    LinkError::Lost(io::Error::new(io::ErrorKind::UnexpectedEof, "the device server closed it"))
+}
+
 impl Link for TcpLink {
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> Result<usize, LinkError> {
         if !wait.is_zero() {
             self.wait(wait).map_err(LinkError::Lost)?;
         }
         match self.stream.read(buffer) {
-            Ok(0) => Err(LinkError::Lost(io::Error::new(
-                io::ErrorKind::UnexpectedEof,
-                "the device server closed it",
-            ))),
+            Ok(0) => Err(closed()),
             Ok(count) => Ok(count),
             Err(error) => match error.kind() {
                 io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => Ok(0),
+                io::ErrorKind::ConnectionReset => Err(closed()),
                 _ => Err(LinkError::Lost(error)),
             },
         }
@@ -82,6 +85,7 @@ impl Link for TcpLink {
             Ok(count) => Ok(count),
             Err(error) => match error.kind() {
                 io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted => Ok(0),
+                io::ErrorKind::ConnectionReset | io::ErrorKind::BrokenPipe => Err(closed()),
                 _ => Err(LinkError::Lost(error)),
             },
         }

@@ -277,7 +277,7 @@ impl Protocol for DcCodes {
     }
 
     fn offer_block(&mut self, number: u64, bytes: &[u8]) {
-        if self.start > 0 && self.start == self.text.len() {
+        if self.start == self.text.len() {
             self.text.clear();
             self.start = 0;
         } else if self.start >= COMPACT_AT {

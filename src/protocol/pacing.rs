@@ -250,4 +250,43 @@ mod tests {
         assert_eq!(pacer.room(Duration::ZERO), UNPACED_WINDOW);
         assert_eq!(pacer.room_at(Duration::ZERO), None);
     }
+
+    #[test]
+    fn a_span_is_the_latency_the_window_and_a_margin_and_its_burst_is_the_share_of_the_line() {
+        let pace = Pace::strict(character(9600), 16 * MS, 10, Some(16));
+        let gaps = pace.gaps.unwrap();
+        assert_eq!((pace.window, gaps.burst), (2, 10));
+        // 11 bits at 9600 baud take 1.145833 ms.
+        assert_eq!(gaps.span, Duration::from_nanos(16_000_000 + 2 * 1_145_833 + 1_000_000));
+        assert!((pace.best_utilisation() - 11.45833 / 19.291_666).abs() < 1e-9);
+        assert_eq!(
+            Pace::free(character(9600), 16 * MS, 10, None).best_utilisation().to_bits(),
+            1f64.to_bits()
+        );
+    }
+
+    #[test]
+    fn a_burst_may_be_followed_by_the_next_as_soon_as_its_span_is_over() {
+        let gaps = Some(Gaps { burst: 4, span: 10 * MS });
+        let mut pacer = Pacer::new(Pace { character: Some(MS), window: 3, gaps, latency: Duration::ZERO });
+        assert_eq!(pacer.room(Duration::ZERO), 3);
+        // Completed at 1, 2 and 3 ms; the fourth may be at once, the fifth not before 11 ms.
+        pacer.handed(3, Duration::ZERO);
+        assert_eq!((pacer.free_at(), pacer.room(2 * MS)), (3 * MS, 1));
+        pacer.handed(1, 2 * MS);
+        assert_eq!(pacer.free_at(), 4 * MS);
+        assert_eq!(pacer.room_at(4 * MS), Some(10 * MS));
+        assert_eq!(pacer.room(10 * MS - Duration::from_nanos(1)), 0);
+        assert_eq!(pacer.room(10 * MS), 3);
+    }
+
+    #[test]
+    fn what_is_completed_after_an_instant_is_no_more_than_was_handed_over() {
+        let mut pacer = Pacer::new(Pace::free(MS, Duration::ZERO, 10, None));
+        pacer.handed(6, Duration::ZERO);
+        assert_eq!(pacer.completed_after(2 * MS, 6), 4);
+        assert_eq!(pacer.completed_after(2 * MS, 3), 3);
+        assert_eq!(pacer.completed_after(6 * MS, 6), 0);
+        assert_eq!(Pacer::new(Pace::unpaced()).completed_after(MS, 70), 70);
+    }
 }

@@ -21,16 +21,38 @@ use crate::formats::three_b::Block;
 use crate::geometry::{Element, Point};
 use crate::units::Position;
 
-/// Blocks chosen one by one, each from where the last one really ended.
+/// Blocks chosen one by one for elements that are pulled.
 #[derive(Debug)]
 pub struct ClosedLoop<I> {
     steps: I,
-    stand: Stand,
-    /// Pieces of the current element still to be made into blocks, first first.
-    pieces: VecDeque<Element>,
+    chooser: Chooser,
     role: Role,
     /// Where the contour in work was opened.
     opened: Position,
+}
+
+/// Chooses the blocks of one element at a time, each from where the last one really ended.
+///
+/// After [`Chooser::give`], [`Chooser::next_block`] is pulled until there is none.
+#[derive(Debug)]
+pub struct Chooser {
+    stand: Stand,
+    /// Pieces of the current element still to be made into blocks, first first.
+    pieces: VecDeque<Element>,
+    /// Where the last piece has to end, whatever theory says.
+    home: Option<Position>,
+    exact_nodes: bool,
+}
+
+/// A block and where theory wants it to end.
+#[derive(Clone, Copy, Debug)]
+pub struct Chosen {
+    /// The block.
+    pub block: Block,
+    /// Where the path is when the block ends, mm.
+    pub target: Point,
+    /// Whether the target is the end of the element.
+    pub at_node: bool,
 }
 
 /// Where the control stands, under the one model it is or under every model it may be.
@@ -50,6 +72,8 @@ struct Goal {
     y_um: f64,
     /// Whether nothing but `at` will do: the contour closes here.
     exactly: bool,
+    /// Whether the block that theory itself would be is tried first.
+    theory_first: bool,
 }
 
 /// A candidate block and where it would leave the control.
@@ -67,22 +91,60 @@ const LIMIT_UM: f64 = 1.045;
 /// The same when every model has to agree, µm.
 const LIMIT_ANY_UM: f64 = 1.4;
 
-impl<I: Iterator<Item = Step>> ClosedLoop<I> {
-    /// Chooses blocks for the elements as they come, with the wire standing at `origin`.
-    pub fn new(steps: I, origin: Position, aim: Aim) -> Self {
-        Self {
-            steps,
-            stand: Stand { aim, at: origin },
-            pieces: VecDeque::new(),
-            role: Role::LeadIn,
-            opened: origin,
+impl Chooser {
+    /// Chooses blocks for a control of the kind aimed at, with the wire standing at `origin`.
+    #[must_use]
+    pub fn new(origin: Position, aim: Aim) -> Self {
+        Self { stand: Stand { aim, at: origin }, pieces: VecDeque::new(), home: None, exact_nodes: false }
+    }
+
+    /// The same chooser; where a node is a whole micron to the last bit, as another 3B program's are, no other will do
+    /// on a control of one model. That may take a second block. With every model aimed at, it is tried first.
+    #[must_use]
+    pub fn with_exact_nodes(mut self) -> Self {
+        self.exact_nodes = true;
+        self
+    }
+
+    /// Where the control stands after the blocks chosen so far.
+    #[must_use]
+    pub fn stands(&self) -> Position {
+        self.stand.at
+    }
+
+    /// Gives the next element; with a `home`, it has to end there exactly: a contour closes.
+    #[inline]
+    pub fn give(&mut self, element: Element, home: Option<Position>) {
+        self.home = home;
+        self.pieces.extend(pieces::countable(element));
+    }
+
+    /// The next block of the element given; none when it is done.
+    #[inline]
+    pub fn next_block(&mut self) -> Option<Chosen> {
+        while let Some(piece) = self.pieces.pop_front() {
+            let end = piece.end();
+            let Some(choice) = self.make(piece) else { continue };
+            self.stand.at = choice.end;
+            return Some(Chosen {
+                block: choice.block,
+                // If the piece was split, the rest of it is in front and the block ends where that begins.
+                target: self.pieces.front().map_or(end, Element::start),
+                at_node: self.pieces.is_empty(),
+            });
         }
+        None
     }
 
     /// Makes the next piece into a block; none when it is too short to move the control at all.
     fn make(&mut self, piece: Element) -> Option<Choice> {
-        let closes = self.role == Role::Closing && self.pieces.is_empty();
-        let goal = if closes { Goal::home(self.opened) } else { Goal::near(piece.end()) };
+        let goal = match self.home {
+            Some(home) if self.pieces.is_empty() => {
+                Goal { theory_first: self.exact_nodes, ..Goal::home(home) }
+            }
+            Some(_) | None if self.exact_nodes => Goal::node(piece.end(), self.stand.aim),
+            Some(_) | None => Goal::near(piece.end()),
+        };
         let found = match piece {
             Element::Line { .. } => line::choose(self.stand, goal),
             Element::Arc { start, end, centre, sense } => {
@@ -106,6 +168,13 @@ impl<I: Iterator<Item = Step>> ClosedLoop<I> {
     }
 }
 
+impl<I: Iterator<Item = Step>> ClosedLoop<I> {
+    /// Chooses blocks for the elements as they come, with the wire standing at `origin`.
+    pub fn new(steps: I, origin: Position, aim: Aim) -> Self {
+        Self { steps, chooser: Chooser::new(origin, aim), role: Role::LeadIn, opened: origin }
+    }
+}
+
 /// No single block cuts the piece within the limit.
 #[derive(Clone, Copy, Debug)]
 struct NoneFits;
@@ -115,35 +184,42 @@ impl<I: Iterator<Item = Step>> Iterator for ClosedLoop<I> {
 
     fn next(&mut self) -> Option<Made> {
         loop {
-            while let Some(piece) = self.pieces.pop_front() {
-                let end = piece.end();
-                let Some(choice) = self.make(piece) else { continue };
-                self.stand.at = choice.end;
-                return Some(Made {
-                    block: choice.block,
-                    // If the piece was split, the rest of it is in front and the block ends where that begins.
-                    target: self.pieces.front().map_or(end, Element::start),
-                    at_node: self.pieces.is_empty(),
-                    role: self.role,
-                });
+            if let Some(Chosen { block, target, at_node }) = self.chooser.next_block() {
+                return Some(Made { block, target, at_node, role: self.role });
             }
             let step = self.steps.next()?;
             self.role = step.role;
             if step.role == Role::Opening {
-                self.opened = self.stand.at;
+                self.opened = self.chooser.stands();
             }
-            self.pieces.extend(pieces::countable(step.element));
+            self.chooser.give(step.element, (step.role == Role::Closing).then_some(self.opened));
         }
     }
 }
 
 impl Goal {
     fn near(point: Point) -> Self {
-        Self { at: Position::nearest(point), x_um: point.x * 1000.0, y_um: point.y * 1000.0, exactly: false }
+        Self {
+            at: Position::nearest(point),
+            x_um: point.x * 1000.0,
+            y_um: point.y * 1000.0,
+            exactly: false,
+            theory_first: false,
+        }
+    }
+
+    /// A node that may be a whole micron, and is then meant.
+    fn node(point: Point, aim: Aim) -> Self {
+        let near = Self::near(point);
+        let (x, y) = (near.at.x.millimetres(), near.at.y.millimetres());
+        if (x, y) != (point.x, point.y) {
+            return near;
+        }
+        Self { exactly: matches!(aim, Aim::One(_)), theory_first: true, ..Self::home(near.at) }
     }
 
     fn home(at: Position) -> Self {
-        Self { at, x_um: at.x.0 as f64, y_um: at.y.0 as f64, exactly: true }
+        Self { at, x_um: at.x.0 as f64, y_um: at.y.0 as f64, exactly: true, theory_first: false }
     }
 
     /// The squared distance of a position from theory, µm².

@@ -3,22 +3,27 @@
 //! A block is recognised by its whole pattern B-B-B-G-Z; white space is free within it, a number may be left out, letters
 //! may be small, and blocks may run on without a line end. Around blocks stand stop words, `%`, line numbers (`N 12:`),
 //! comments (`; …`, `( … )`, rows of `*`) and header lines (`Start Point = …`). What is none of these is an error with
-//! its place: nothing a file says is skipped in silence. 4B blocks are recognised and refused; reading them is not here.
+//! its place: nothing a file says is skipped in silence.
+//!
+//! A block within one line is taken in one go (`quick`); one over several lines, and whatever is wrong, goes character by character (`careful`). 4B is read by [`crate::formats::four_b`] through the same
+//! reader; here its blocks are recognised and refused.
 
-use std::io::{self, BufRead};
+mod around;
+mod careful;
+mod pieces;
+mod quick;
 
-use super::{Axis, Block, COUNT_MAX, Motion, Quadrant};
+use std::io;
+
+use super::{Block, Motion};
 use crate::formats::ReadError;
-use crate::geometry::Sense;
-use crate::interpolator::{COORDINATE_MAX, Model};
-use crate::place::Place;
+use crate::formats::four_b::{self, Fourth};
+use crate::motion::Flag;
+use crate::place::{Place, Spot};
 use crate::units::Micrometres;
 
-/// The longest line that is held; a longer one is an error, not a buffer, unless it is of blocks that run together.
-pub const LINE_BYTES_MAX: usize = 65_536;
-
-/// The longest a block's own text may be, white space aside.
-const BLOCK_BYTES_MAX: usize = 200;
+pub use pieces::LINE_BYTES_MAX;
+use pieces::Pieces;
 
 /// Something of a 3B program.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,43 +34,148 @@ pub enum Item {
     StopWord(&'static str),
 }
 
+/// Anything a 3B source says: what goes to the control, and what stands around it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Entry {
+    /// What goes to the control.
+    Item(Item),
+    /// A remark; [`Reader::text`] has it without its brackets or semicolon.
+    Comment,
+    /// A header line, a row of stars, or `%`; [`Reader::text`] has it as it stands.
+    Header,
+    /// A line number (`N 12:`); [`Reader::text`] has its digits.
+    Number,
+}
+
 /// Reads a 3B program item by item.
 #[derive(Debug)]
 pub struct Reader<R> {
-    input: R,
-    /// The line in work, or a piece of a long one.
-    line: Vec<u8>,
-    /// What was read of a long line beyond the piece in work.
-    rest: Vec<u8>,
-    line_number: u64,
-    /// Columns of the line before the piece in work.
-    line_column: u64,
-    line_byte: u64,
+    pieces: Pieces<R>,
+    grammar: Grammar,
+    /// How much of the piece in work has been read.
     at: usize,
-    text: Vec<u8>,
+    text: Text,
+    /// The block in work, its text without white space, in capitals.
+    spelled: Vec<u8>,
+    /// What the block just read says beyond 3B.
+    beyond: Beyond,
+    begun: Spot,
     ended_by: Option<&'static str>,
 }
 
-impl<R: BufRead> Reader<R> {
+/// Which blocks are read.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Grammar {
+    ThreeB,
+    /// 3B and 4B mixed.
+    FourB,
+}
+
+/// Where the text of the last entry is.
+#[derive(Clone, Copy, Debug)]
+enum Text {
+    /// In the piece in work, as it stands.
+    AsItStands { from: usize, to: usize },
+    /// In [`Reader::spelled`].
+    Spelled,
+}
+
+/// What a 4B block says beyond 3B.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub(in crate::formats) struct Beyond {
+    pub(in crate::formats) fourth: Option<Fourth>,
+    pub(in crate::formats) flag: Option<Flag>,
+}
+
+/// Why a block's flag and radius do not go with the rest of it.
+struct Misfit {
+    message: &'static str,
+    help: &'static str,
+}
+
+impl Beyond {
+    /// Whether flag and radius go with the block.
+    fn fits(self, block: &Block) -> Result<(), Misfit> {
+        let arc = matches!(block.motion, Motion::Arc(..));
+        match (self.fourth, self.flag) {
+            (None, None) => Ok(()),
+            (Some(Fourth::Radius(radius)), flag) if arc => {
+                if flag.is_none() {
+                    return Err(Misfit {
+                        message: "an arc with a radius and no flag",
+                        help: "write D for a convex arc, DD for a concave one",
+                    });
+                }
+                let (x, y) = (block.x.0 as f64, block.y.0 as f64);
+                if ((x * x + y * y).sqrt() - radius.0 as f64).abs() > four_b::RADIUS_TOLERANCE_UM {
+                    return Err(Misfit {
+                        message: "R is not the radius of the circle through X, Y",
+                        help: "R² is X² + Y² on an arc, whose X, Y are its start seen from the centre",
+                    });
+                }
+                Ok(())
+            }
+            (None | Some(Fourth::Ratio(_)), _) if arc => Err(Misfit {
+                message: "an arc with a flag and no radius",
+                help: "write the radius of the outline, whole micrometres, behind the fourth B",
+            }),
+            (Some(Fourth::Radius(Micrometres(0)) | Fourth::Ratio(_)) | None, _) => Ok(()),
+            (Some(Fourth::Radius(_)), _) => Err(Misfit {
+                message: "a straight line with a radius",
+                help: "leave out the number behind the fourth B, or check the letter of Z",
+            }),
+        }
+    }
+}
+
+impl<R: io::Read> Reader<R> {
     /// A reader at the start of a program.
     pub fn new(input: R) -> Self {
+        Self::of(Grammar::ThreeB, input)
+    }
+
+    /// A reader of 3B and 4B mixed.
+    pub(in crate::formats) fn of_four_b(input: R) -> Self {
+        Self::of(Grammar::FourB, input)
+    }
+
+    fn of(grammar: Grammar, input: R) -> Self {
         Self {
-            input,
-            line: Vec::new(),
-            rest: Vec::new(),
-            line_number: 0,
-            line_column: 0,
-            line_byte: 0,
+            pieces: Pieces::new(input),
+            grammar,
             at: 0,
-            text: Vec::new(),
+            text: Text::Spelled,
+            spelled: Vec::new(),
+            beyond: Beyond::default(),
+            begun: Spot::default(),
             ended_by: None,
         }
     }
 
-    /// The text of the block just read, as it stands in the source without white space, in capitals.
+    /// The text of what was just read: of a block as it stands in the source without white space, in capitals.
     #[must_use]
     pub fn text(&self) -> &[u8] {
-        &self.text
+        match self.text {
+            Text::AsItStands { from, to } => self.pieces.piece().get(from..to).unwrap_or_default(),
+            Text::Spelled => &self.spelled,
+        }
+    }
+
+    /// Where what was just read begins.
+    #[must_use]
+    pub fn spot(&self) -> Spot {
+        self.begun
+    }
+
+    /// The byte of the source behind what was just read.
+    #[must_use]
+    pub fn end_byte(&self) -> u64 {
+        self.pieces.byte() + self.at as u64
+    }
+
+    /// What the block just read says beyond 3B.
+    pub(in crate::formats) fn beyond(&self) -> Beyond {
+        self.beyond
     }
 
     /// The next block or stop word; none at the end of the source.
@@ -75,70 +185,86 @@ impl<R: BufRead> Reader<R> {
     /// With the place of the first thing that is not 3B, or of a block no control can run.
     pub fn next_item(&mut self) -> Result<Option<Item>, ReadError> {
         loop {
-            let Some(&byte) = self.line.get(self.at) else {
-                if self.next_line()? {
-                    continue;
-                }
-                return Ok(None);
-            };
-            match byte {
-                b' ' | b'\t' | b'\r' | b'\n' | 0 | 0x1A => self.at += 1,
-                // A UTF-8 byte order mark, as editors leave it.
-                0xEF if self.line_number == 1 && self.at == 0 && self.line.starts_with(b"\xEF\xBB\xBF") => {
-                    self.at = 3
-                }
-                b'%' => self.at += 1,
-                b';' => self.at = self.line.len(),
-                b'*' => self.row_of_stars()?,
-                b'(' => {
-                    self.at = self.line[self.at..]
-                        .iter()
-                        .position(|&b| b == b')')
-                        .map_or(self.line.len(), |n| self.at + n + 1);
-                }
-                b'N' | b'n' if self.skip_line_number() => {}
-                b'B' | b'b' if self.block_follows() => return self.block().map(Some),
-                b'D' | b'd' | b'E' | b'e' => match self.stop_word() {
-                    Some(word) => {
-                        if word != "D" {
-                            self.ended_by = Some(word);
-                        }
-                        return Ok(Some(Item::StopWord(word)));
-                    }
-                    None => self.header()?,
-                },
-                _ => self.header()?,
+            match self.next_entry()? {
+                Some(Entry::Item(item)) => return Ok(Some(item)),
+                Some(Entry::Comment | Entry::Header | Entry::Number) => {}
+                None => return Ok(None),
             }
         }
     }
 
-    /// Reads the next line into `line`, or of a longer one the next blocks that run together; false at the end.
-    fn next_line(&mut self) -> Result<bool, ReadError> {
-        self.line_byte += self.line.len() as u64;
-        let continues = !self.line.is_empty() && !self.line.ends_with(b"\n");
-        if continues {
-            self.line_column += self.line.len() as u64;
-        } else {
-            self.line_number += 1;
-            self.line_column = 0;
-        }
-        self.line.clear();
-        self.line.append(&mut self.rest);
-        self.at = 0;
-        let room = (LINE_BYTES_MAX + 1 - self.line.len()) as u64;
-        let read = io::Read::take(&mut self.input, room).read_until(b'\n', &mut self.line)?;
-        if self.line.len() > LINE_BYTES_MAX {
-            let Some(cut) = end_of_last_block(&self.line) else {
-                return Err(self.error(
-                    LINE_BYTES_MAX,
-                    1,
-                    format!("the line is longer than {LINE_BYTES_MAX} bytes and not of blocks alone"),
-                    "break it; only blocks may run together at any length",
-                ));
+    /// The next thing the source says, of whatever kind; none at its end.
+    ///
+    /// # Errors
+    ///
+    /// As [`Reader::next_item`].
+    pub fn next_entry(&mut self) -> Result<Option<Entry>, ReadError> {
+        loop {
+            let Some(&byte) = self.pieces.piece().get(self.at) else {
+                if self.next_piece()? {
+                    continue;
+                }
+                return Ok(None);
             };
-            self.rest = self.line.split_off(cut);
+            if matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | 0 | 0x1A) {
+                self.at += 1;
+                continue;
+            }
+            if matches!(byte, b'B' | b'b')
+                && let Some(block) = self.quick()
+            {
+                return Ok(Some(Entry::Item(Item::Block(block))));
+            }
+            self.begun = self.spot_at(self.at);
+            return self.entry(byte).map(Some);
         }
-        Ok(read > 0 || !self.line.is_empty())
+    }
+
+    /// A block written plainly; none when the careful way has to look at it.
+    fn quick(&mut self) -> Option<Block> {
+        if self.ended_by.is_some() {
+            return None;
+        }
+        let read = match self.grammar {
+            Grammar::ThreeB => quick::block::<false>,
+            Grammar::FourB => quick::block::<true>,
+        };
+        let line = self.pieces.piece().get(self.at..)?;
+        let (text, length, (block, beyond)) = match read(line) {
+            Some((block, beyond, length)) => {
+                (Text::AsItStands { from: self.at, to: self.at + length }, length, (block, beyond))
+            }
+            None => {
+                quick::squeeze(line, &mut self.spelled);
+                let (block, beyond, length) = read(&self.spelled)?;
+                self.spelled.truncate(length);
+                (Text::Spelled, quick::spread(line, length), (block, beyond))
+            }
+        };
+        self.begun = self.spot_at(self.at);
+        self.beyond = beyond;
+        self.text = text;
+        self.at += length;
+        Some(block)
+    }
+
+    /// Goes on to the next piece; false at the end of the source.
+    fn next_piece(&mut self) -> Result<bool, ReadError> {
+        self.at = 0;
+        let more = self.pieces.next_piece()?;
+        // A UTF-8 byte order mark, as editors leave it.
+        if more && self.pieces.byte() == 0 && self.pieces.piece().starts_with(b"\xEF\xBB\xBF") {
+            self.at = 3;
+        }
+        Ok(more)
+    }
+
+    /// An error at what was just read.
+    pub(in crate::formats) fn error_here(&self, message: String, help: &'static str) -> ReadError {
+        let byte = self.pieces.byte();
+        // What began in a line that is gone is shown by its last line.
+        let from = self.begun.byte.checked_sub(byte).map_or(0, |at| at as usize).min(self.at);
+        self.error(from, self.at - from, message, help)
     }
 
     fn error(&self, at: usize, width: usize, message: impl Into<String>, help: &'static str) -> ReadError {
@@ -146,246 +272,18 @@ impl<R: BufRead> Reader<R> {
     }
 
     fn place(&self, at: usize, width: usize) -> Place {
-        let line = self.line.strip_suffix(b"\n").unwrap_or(&self.line);
-        let line = line.strip_suffix(b"\r").unwrap_or(line);
-        let mut place = Place::in_line(line, self.line_number, self.line_byte, at.min(line.len()), width);
-        place.column += self.line_column;
-        place
+        self.pieces.place(at, width)
     }
 
-    /// Skips `N 12:` of a listing.
-    fn skip_line_number(&mut self) -> bool {
-        let rest = &self.line[self.at + 1..];
-        let digits = rest.iter().take_while(|b| b.is_ascii_digit() || **b == b' ').count();
-        if rest[..digits].iter().any(u8::is_ascii_digit) && rest.get(digits) == Some(&b':') {
-            self.at += digits + 2;
-            return true;
-        }
-        false
+    fn spot_at(&self, at: usize) -> Spot {
+        self.pieces.spot(at)
     }
-
-    /// Whether the B here opens a block: a number or another B comes after it.
-    fn block_follows(&self) -> bool {
-        let next = self.line[self.at + 1..].iter().find(|b| !b.is_ascii_whitespace());
-        next.is_none_or(|&b| {
-            b.is_ascii_digit() || b == b'B' || b == b'b' || b == b'-' || b == b'+' || b == b'.'
-        })
-    }
-
-    fn stop_word(&mut self) -> Option<&'static str> {
-        let rest = &self.line[self.at..];
-        let word = ["DD", "D", "E"].into_iter().find(|word| {
-            let Some((start, after)) = rest.split_at_checked(word.len()) else { return false };
-            let ends = matches!(
-                after.first(),
-                None | Some(b' ' | b'\t' | b'\r' | b'\n' | b';' | b'(' | b'%' | b'B' | b'b' | 0 | 0x1A)
-            );
-            start.eq_ignore_ascii_case(word.as_bytes()) && ends
-        })?;
-        self.at += word.len();
-        Some(word)
-    }
-
-    /// A row of stars, with or without words between them; a block among them is not decoration.
-    fn row_of_stars(&mut self) -> Result<(), ReadError> {
-        let rest = self.line[self.at..].trim_ascii_end();
-        if holds_block_pattern(rest) {
-            return Err(self.error(
-                self.at,
-                rest.len(),
-                "a block behind a `*`",
-                "put remarks in ( ) or after ;",
-            ));
-        }
-        self.at = self.line.len();
-        Ok(())
-    }
-
-    /// A line of words: kept out of the program if it is a header, else an error.
-    fn header(&mut self) -> Result<(), ReadError> {
-        let rest = self.line[self.at..].trim_ascii_end();
-        let words = rest.split(|&b| b == b';' || b == b'(').next().unwrap_or_default();
-        if !words.contains(&b'=') || holds_block_pattern(words) {
-            return Err(self.error(
-                self.at,
-                rest.len(),
-                "neither a 3B block nor a comment",
-                "a block is `B X B Y B J G Z`, such as B579B6617B006617GYL2; put remarks in ( ) or after ;",
-            ));
-        }
-        self.at = self.line.len();
-        Ok(())
-    }
-
-    /// The next character of a block that is not white space, over line ends.
-    fn peek(&mut self) -> Result<Option<u8>, ReadError> {
-        loop {
-            match self.line.get(self.at) {
-                Some(b' ' | b'\t' | b'\r' | 0) => self.at += 1,
-                Some(b'\n') | None => {
-                    // The end of the line is looked past only if there is a next one, so that an error has a place.
-                    if self.rest.is_empty() && self.input.fill_buf()?.is_empty() {
-                        return Ok(None);
-                    }
-                    self.next_line()?;
-                }
-                Some(&byte) => return Ok(Some(byte.to_ascii_uppercase())),
-            }
-        }
-    }
-
-    /// Takes a character of the block into its text.
-    fn take(&mut self, byte: u8) {
-        self.text.push(byte);
-        self.at += 1;
-    }
-
-    fn number(&mut self, name: &str, largest: i64) -> Result<i64, ReadError> {
-        let mut value = 0i64;
-        let mut start = None;
-        while let Some(byte) = self.peek()? {
-            if !byte.is_ascii_digit() {
-                if matches!(byte, b'-' | b'+' | b'.' | b',') {
-                    return Err(self.error(
-                        self.at,
-                        1,
-                        format!(
-                            "{name} holds `{}`: 3B numbers are whole micrometres without sign",
-                            byte as char
-                        ),
-                        "write 6.617 mm as 6617; the direction is in the digit of Z",
-                    ));
-                }
-                break;
-            }
-            start = start.or(Some(self.at));
-            value = value * 10 + i64::from(byte - b'0');
-            if value > largest || self.text.len() > BLOCK_BYTES_MAX {
-                let from = start.unwrap_or(self.at).min(self.at);
-                return Err(self.error(
-                    from,
-                    self.at + 1 - from,
-                    format!("{name} is larger than {largest} µm, or written with too many zeros"),
-                    "split the move into shorter blocks",
-                ));
-            }
-            self.take(byte);
-        }
-        Ok(value)
-    }
-
-    fn expect(
-        &mut self,
-        wanted: &str,
-        accept: impl Fn(u8) -> bool,
-        help: &'static str,
-    ) -> Result<u8, ReadError> {
-        match self.peek()? {
-            Some(byte) if accept(byte) => {
-                self.take(byte);
-                Ok(byte)
-            }
-            Some(byte) => {
-                let found = if byte.is_ascii_graphic() {
-                    format!("`{}`", byte as char)
-                } else {
-                    format!("byte {byte:02X}h")
-                };
-                Err(self.error(self.at, 1, format!("expected {wanted}, found {found}"), help))
-            }
-            None => {
-                Err(self.error(self.at, 0, format!("expected {wanted}, found the end of the program"), help))
-            }
-        }
-    }
-
-    fn block(&mut self) -> Result<Item, ReadError> {
-        self.text.clear();
-        let (first_line, at) = (self.line_number, self.at);
-        if let Some(word) = self.ended_by {
-            return Err(self.error(
-                self.at,
-                1,
-                format!("a block after the stop word {word}"),
-                "the control stops at the stop word; put one program in one file",
-            ));
-        }
-        let pattern = "a 3B block is `B X B Y B J G Z`, such as B579B6617B006617GYL2";
-        let mut numbers = [0; 3];
-        for (n, name, largest) in [(0, "X", COORDINATE_MAX), (1, "Y", COORDINATE_MAX), (2, "J", COUNT_MAX.0)]
-        {
-            self.expect("B", |b| b == b'B', pattern)?;
-            numbers[n] = self.number(name, largest)?;
-        }
-        if self.peek()? == Some(b'B') {
-            return Err(self.error(
-                self.at,
-                1,
-                "a fourth B: this is a 4B block, and only 3B is read here",
-                "convert the program to 3B with the wire's offset in its numbers",
-            ));
-        }
-        if self.peek()? == Some(b'G') {
-            self.take(b'G');
-        }
-        let g = self.expect("the counting axis GX or GY", |b| b == b'X' || b == b'Y', pattern)?;
-        let g = if g == b'X' { Axis::X } else { Axis::Y };
-        let z = "L1-L4, SR1-SR4 or NR1-NR4";
-        let letter = self.expect(z, |b| matches!(b, b'L' | b'S' | b'N'), pattern)?;
-        if letter != b'L' {
-            self.expect("R", |b| b == b'R', pattern)?;
-        }
-        let digit = self.expect("the digit 1, 2, 3 or 4", |b| (b'1'..=b'4').contains(&b), pattern)?;
-        let Some(quadrant) = Quadrant::from_digit(digit) else { unreachable!("the digit was accepted") };
-        let motion = match letter {
-            b'L' => Motion::Line(quadrant),
-            b'S' => Motion::Arc(Sense::Clockwise, quadrant),
-            _ => Motion::Arc(Sense::CounterClockwise, quadrant),
-        };
-        let [x, y, j] = numbers.map(Micrometres);
-        let block = Block { x, y, j, g, motion };
-        Model::Rotated.displacement(&block).map_err(|fault| {
-            // A block over several lines is shown by its last one.
-            let (from, width) =
-                if first_line == self.line_number { (at, self.at - at) } else { (0, self.at) };
-            ReadError::Program {
-                message: fault.to_string(),
-                place: self.place(from, width),
-                help: "no control can run this block to its end; check G and the digit of Z".into(),
-            }
-        })?;
-        Ok(Item::Block(block))
-    }
-}
-
-/// Where the last whole block of a piece of line ends, if the piece is of blocks alone.
-fn end_of_last_block(piece: &[u8]) -> Option<usize> {
-    if piece.iter().any(|byte| matches!(byte, b';' | b'(' | b'*' | b'=' | b'%')) {
-        return None;
-    }
-    let ends = |pair: &[u8]| matches!(pair, [b'L' | b'l' | b'R' | b'r', b'1'..=b'4']);
-    piece.windows(2).rposition(ends).map(|at| at + 2)
-}
-
-/// Whether words hold three B with nothing but digits and blanks between them: a block, whatever stands around it.
-fn holds_block_pattern(words: &[u8]) -> bool {
-    let mut found = 0;
-    for byte in words {
-        match byte {
-            b'B' | b'b' => found += 1,
-            b'0'..=b'9' | b' ' | b'\t' => {}
-            _ => found = 0,
-        }
-        if found == 3 {
-            return true;
-        }
-    }
-    false
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::three_b::{Quadrant, Sense};
     use crate::units::Position;
 
     fn read(text: &str) -> Result<Vec<(Item, String)>, ReadError> {
@@ -482,5 +380,108 @@ mod tests {
             let mut reader = Reader::new(&bytes[..]);
             while let Ok(Some(_)) = reader.next_item() {}
         }
+    }
+
+    fn refused_place(text: &str) -> Place {
+        match read(text).unwrap_err() {
+            ReadError::Program { place, .. } => place,
+            ReadError::Io(error) => panic!("{error}"),
+        }
+    }
+
+    #[test]
+    fn remarks_in_parentheses_are_passed_over_and_end_with_their_line() {
+        let program = "(first) B7B0B7GXL1 (B9 B9) B0B8B8GYL2 (open B9B0B9GXL1\nB9B0B9GXL1";
+        assert_eq!(texts(program), ["B7B0B7GXL1", "B0B8B8GYL2", "B9B0B9GXL1"]);
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_passed_over_at_the_very_start_only() {
+        assert_eq!(texts("\u{feff}B7B0B7GXL1"), ["B7B0B7GXL1"]);
+        for (program, line, column) in [
+            ("B7B0B7GXL1\n\u{feff}B7B0B7GXL1", 2, 1),
+            ("B7B0B7GXL1\u{feff}B7B0B7GXL1", 1, 11),
+            ("\u{ff22}\u{ff22}B7B0B7GXL1", 1, 1),
+        ] {
+            let place = refused_place(program);
+            assert_eq!((place.line, place.column), (line, column), "{program}");
+        }
+    }
+
+    #[test]
+    fn a_line_number_is_digits_with_a_colon() {
+        assert_eq!(texts("N 12:B7B0B7GXL1\nn13: B7B0B7GXL1"), ["B7B0B7GXL1", "B7B0B7GXL1"]);
+        for program in ["N12XB7B0B7GXL1", "N 12 B7B0B7GXL1", "N : B7B0B7GXL1", "N:B7B0B7GXL1"] {
+            assert_eq!(refusal(program), ("neither a 3B block nor a comment".to_owned(), 1, 1), "{program}");
+        }
+    }
+
+    #[test]
+    fn each_stop_word_is_known_by_its_own_name() {
+        for (program, word) in
+            [("D", "D"), ("d\n", "D"), ("D ", "D"), ("DD", "DD"), ("dd;", "DD"), ("E ", "E")]
+        {
+            let (item, _) = read(program).unwrap().remove(0);
+            assert_eq!(item, Item::StopWord(word), "{program}");
+        }
+        for program in ["DDX", "DX", "EX", "DE"] {
+            assert!(refusal(program).0.contains("neither"), "{program}");
+        }
+    }
+
+    #[test]
+    fn every_instruction_is_read_as_what_it_says() {
+        for (text, sense, digit) in [
+            ("B0B5B5GXSR1", Sense::Clockwise, Quadrant::First),
+            ("B5B0B5GXSR2", Sense::Clockwise, Quadrant::Second),
+            ("B5B0B5GXNR1", Sense::CounterClockwise, Quadrant::First),
+            ("B5B0B5GXNR3", Sense::CounterClockwise, Quadrant::Third),
+        ] {
+            let Item::Block(block) = read(text).unwrap().remove(0).0 else { panic!("{text} is a block") };
+            assert_eq!(block.motion, Motion::Arc(sense, digit));
+        }
+    }
+
+    #[test]
+    fn a_sign_or_a_point_is_named_wherever_a_number_begins_with_it() {
+        for sign in ['-', '+', '.'] {
+            let (message, _, column) = refusal(&format!("B{sign}1B2B3GXL1"));
+            assert!(message.starts_with(&format!("X holds `{sign}`")), "{message}");
+            assert_eq!(column, 2);
+        }
+    }
+
+    #[test]
+    fn the_largest_count_is_read_and_a_larger_number_is_underlined() {
+        assert_eq!(texts("B999999B0B999999GXL1"), ["B999999B0B999999GXL1"]);
+        let place = refused_place("B7B0B7GXL1\nB1000000B0B1000000GXL1");
+        assert_eq!((place.line, place.column, place.byte, place.width), (2, 12, 22, 7));
+        let zeros = format!("B{}B{}B1GXL1", "0".repeat(199), "0".repeat(500));
+        assert!(refusal(&zeros).0.contains("too many zeros"));
+    }
+
+    #[test]
+    fn a_block_that_never_ends_is_underlined_whole_on_the_line_it_ends_on() {
+        let place = refused_place("B7B0B7GXL1\nB7B0B7GXL1 B0B0B500GYL1 B7B0B7GXL1\n");
+        assert_eq!((place.line, place.column, place.byte, place.width), (2, 12, 22, 12));
+        let place = refused_place("B7B0B7GXL1 B0B0\nB500GYL1 B7B0B7GXL1\n");
+        assert_eq!((place.line, place.column, place.byte, place.width), (2, 1, 16, 8));
+        let long =
+            format!("{}B0B0B500GYL1{}", "B9900B0B9900GXL1".repeat(4095), "B9900B0B9900GXL1".repeat(4095));
+        let place = refused_place(&long);
+        assert_eq!((place.line, place.column, place.byte, place.width), (1, 65_521, 65_520, 12));
+    }
+
+    #[test]
+    fn a_line_may_be_as_long_as_is_said_and_what_stands_behind_its_blocks_is_not_lost() {
+        let remark = format!(";{}", "x".repeat(LINE_BYTES_MAX - 1));
+        assert_eq!(texts(&remark), [""; 0]);
+        assert!(refusal(&format!("{remark}x")).0.contains("longer"));
+        let gap = " ".repeat(LINE_BYTES_MAX);
+        assert!(refusal(&format!("B7B0B7GXL1{gap}B7B0B7GXL1")).0.contains("longer"));
+        let blocks = "B9900B0B9900GXL1".repeat(4000);
+        let blanks = " ".repeat(LINE_BYTES_MAX - 1 - blocks.len());
+        let items = read(&format!("{blocks}{blanks}DD")).unwrap();
+        assert_eq!((items.len(), &items[4000].0), (4001, &Item::StopWord("DD")));
     }
 }

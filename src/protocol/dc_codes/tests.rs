@@ -262,3 +262,223 @@ fn blocks_are_asked_for_only_when_the_window_has_room() {
     m.offer_block(1, &[b'B'; 20]);
     assert!(!m.wants_block(MS));
 }
+
+/// A line of a character a millisecond, three bytes ahead, heard four milliseconds late.
+fn paced() -> DcCodes {
+    let pace = Pace { character: Some(MS), window: 3, gaps: None, latency: 4 * MS };
+    DcCodes::new(settings(pace), Duration::ZERO)
+}
+
+#[test]
+fn reset_and_alarm_are_heard_from_the_start_to_the_end_and_not_before() {
+    for (byte, failure) in [(0x16, Failure::ControlReset), (0x15, Failure::ControlAlarm)] {
+        let mut m = machine();
+        m.offer_block(1, b"DD\n");
+        m.handle_received(&[byte], MS);
+        assert_eq!(m.phase(), Phase::AwaitingStart { since: Duration::ZERO });
+
+        let feeding = |m: &mut DcCodes| {
+            m.handle_transmitted(5, MS);
+            assert_eq!(m.phase(), Phase::Feeding);
+        };
+        let held = |m: &mut DcCodes| {
+            m.handle_transmitted(5, MS);
+            m.handle_received(&[0x13], MS);
+            assert_eq!(m.phase(), Phase::Held { since: MS });
+        };
+        let draining = |m: &mut DcCodes| {
+            m.finish(ProgramEnd::StopWord);
+            m.handle_transmitted(7, MS);
+            assert_eq!(m.phase(), Phase::Draining);
+        };
+        let lingering = |m: &mut DcCodes| {
+            m.finish(ProgramEnd::StopWord);
+            m.handle_transmitted(5, MS);
+            m.handle_received(&[0x13], MS);
+            assert_eq!(m.phase(), Phase::Lingering { until: MS + LINGER });
+        };
+        for bring_to in [&feeding as &dyn Fn(&mut DcCodes), &held, &draining, &lingering] {
+            let mut m = machine();
+            m.handle_received(&[0x11], MS);
+            m.offer_block(1, b"DD\n");
+            bring_to(&mut m);
+            m.handle_received(&[byte], 2 * MS);
+            assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Failed { failure, torn: None })));
+        }
+    }
+}
+
+#[test]
+fn the_tally_counts_bytes_holds_and_the_time_held() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"B1\n");
+    assert_eq!(take(&mut m, 2 * MS).len(), 5);
+    m.handle_received(&[0x13], 4 * MS);
+    m.handle_received(&[0x11], 7 * MS);
+    m.handle_received(&[0x13], 8 * MS);
+    m.handle_received(&[0x11], 10 * MS);
+    m.offer_block(2, b"B2\n");
+    assert_eq!(take(&mut m, 11 * MS).len(), 3);
+    let last_byte = Some((11 * MS, 5 * MS));
+    // Of an unpaced line nothing is known but that all five may have come after DC3; none went out between the holds.
+    let tally = Tally { bytes: 8, last_byte, held: 5 * MS, holds: 2, max_overrun_bytes: 5 };
+    assert_eq!(m.tally(), tally);
+}
+
+#[test]
+fn the_overrun_is_what_the_wire_completes_after_dc3_has_left_the_control() {
+    let mut m = paced();
+    m.handle_received(&[0x11], Duration::ZERO);
+    m.offer_block(1, b"B1B1B1\n");
+    assert_eq!(take(&mut m, Duration::ZERO).len(), 3);
+    assert_eq!(take(&mut m, 2 * MS).len(), 2);
+    // Five characters, completed at 1 to 5 ms; heard at 5 ms, DC3 left at 1 ms.
+    m.handle_received(&[0x13], 5 * MS);
+    assert_eq!(m.tally().max_overrun_bytes, 4);
+}
+
+#[test]
+fn a_hold_with_blocks_to_go_is_a_hold_though_the_source_is_at_its_end() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"B1\n");
+    m.offer_block(1, b"DD\n");
+    m.finish(ProgramEnd::StopWord);
+    m.handle_transmitted(5, MS);
+    m.handle_received(&[0x13], MS);
+    assert_eq!(m.phase(), Phase::Held { since: MS });
+
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"DD\n");
+    m.handle_transmitted(2, MS);
+    m.handle_received(&[0x13], MS);
+    m.finish(ProgramEnd::StopWord);
+    assert_eq!(m.phase(), Phase::Held { since: MS });
+}
+
+#[test]
+fn a_hold_before_the_source_says_it_ends_with_a_block_stays_one() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"B1\n");
+    m.handle_transmitted(5, MS);
+    m.handle_received(&[0x13], MS);
+    m.finish(ProgramEnd::Block);
+    assert_eq!(m.phase(), Phase::Held { since: MS });
+}
+
+#[test]
+fn dc3_is_the_end_where_there_is_no_trailer_to_ask_for() {
+    let mut m = DcCodes::new(Settings { trailer: Vec::new(), ..settings(Pace::unpaced()) }, Duration::ZERO);
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"DD\n");
+    take(&mut m, MS);
+    m.finish(ProgramEnd::StopWord);
+    m.handle_received(&[0x13], 2 * MS);
+    assert_eq!((m.phase(), m.poll_timeout(2 * MS)), (Phase::Draining, Some(2 * MS + LISTEN)));
+}
+
+#[test]
+fn the_control_is_listened_to_until_well_after_the_line_is_empty() {
+    let mut m = paced();
+    m.handle_received(&[0x11], Duration::ZERO);
+    m.offer_block(1, b"D");
+    assert_eq!(take(&mut m, Duration::ZERO), b"%\nD");
+    m.finish(ProgramEnd::StopWord);
+    assert_eq!(take(&mut m, 3 * MS), b"%\n");
+    let over = 5 * MS + 4 * MS + LISTEN;
+    assert_eq!(m.poll_timeout(3 * MS), Some(over));
+    m.handle_timeout(over - Duration::from_nanos(1));
+    assert_eq!(m.phase(), Phase::Draining);
+    m.handle_timeout(over);
+    assert_eq!(m.phase(), Phase::Ended);
+}
+
+#[test]
+fn a_link_that_goes_while_the_last_bytes_are_on_the_wire_is_lost() {
+    let mut m = paced();
+    m.handle_received(&[0x11], Duration::ZERO);
+    m.offer_block(1, b"D");
+    m.finish(ProgramEnd::StopWord);
+    take(&mut m, Duration::ZERO);
+    take(&mut m, 3 * MS);
+    assert_eq!(m.phase(), Phase::Draining);
+    m.handle_link_lost(5 * MS - Duration::from_nanos(1));
+    let failure = Failure::LinkLost;
+    assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Failed { failure, torn: None })));
+}
+
+#[test]
+fn a_stop_that_comes_when_all_is_handed_over_takes_nothing_back() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"DD\n");
+    m.finish(ProgramEnd::StopWord);
+    take(&mut m, MS);
+    m.handle_command(Command::StopAtBlock, 2 * MS);
+    m.handle_timeout(MS + LISTEN);
+    assert_eq!(events(&mut m).last(), Some(&Event::Ended(Ending::Done { trailer_unsent: 0 })));
+}
+
+#[test]
+fn what_the_link_did_not_take_goes_out_before_what_is_offered_after_it() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    m.offer_block(1, b"B1\n");
+    m.handle_transmitted(3, MS);
+    m.offer_block(2, b"B2\n");
+    assert_eq!(take(&mut m, MS), b"1\nB2\n");
+}
+
+#[test]
+fn what_was_handed_over_is_not_kept_for_good_though_something_always_waits() {
+    let mut m = machine();
+    m.handle_received(&[0x11], MS);
+    for n in 1..=50 {
+        m.offer_block(n, &[b'B'; COMPACT_AT]);
+        m.handle_transmitted(m.left() - 1, MS);
+        assert!(m.text.len() <= 2 * COMPACT_AT + 2);
+    }
+}
+
+#[test]
+fn one_block_is_asked_for_before_the_start_and_none_of_an_empty_program() {
+    let mut m = machine();
+    assert!(m.wants_block(MS));
+    m.offer_block(1, b"B1\n");
+    assert!(!m.wants_block(MS));
+    let mut m = machine();
+    m.finish(ProgramEnd::Block);
+    assert!(!m.wants_block(MS));
+}
+
+#[test]
+fn what_waits_here_and_what_is_on_the_wire_share_the_window() {
+    let mut m = paced();
+    m.handle_received(&[0x11], Duration::ZERO);
+    assert_eq!(take(&mut m, Duration::ZERO), b"%\n");
+    assert!(m.wants_block(Duration::ZERO));
+    m.offer_block(1, b"B");
+    assert!(!m.wants_block(Duration::ZERO));
+    assert!(m.wants_block(MS));
+    m.offer_block(2, b"B");
+    assert!(!m.wants_block(MS));
+}
+
+#[test]
+fn a_machine_with_nothing_to_send_waits_for_the_source_and_one_with_something_for_the_wire() {
+    let mut m = paced();
+    m.handle_received(&[0x11], Duration::ZERO);
+    take(&mut m, Duration::ZERO);
+    assert_eq!(m.poll_timeout(Duration::ZERO), None);
+    // Two of three places are taken: when the first character has left the wire there is room for two.
+    m.offer_block(1, b"B1\n");
+    take(&mut m, Duration::ZERO);
+    assert_eq!(m.poll_timeout(Duration::ZERO), Some(MS));
+    m.handle_timeout(3 * MS);
+    assert_eq!(take(&mut m, 3 * MS), b"1\n");
+    m.offer_block(2, b"B");
+    assert_eq!(m.poll_timeout(4 * MS), Some(4 * MS));
+}

@@ -10,6 +10,7 @@ use crate::units::{Micrometres, Position};
 /// What of an arc matters to its block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
+    start_um: Point,
     centre_um: Point,
     sense: Sense,
     /// The sweep in quarter turns, to the middle of its quarter: 0.5, 1.5, 2.5, 3.5, or 4 for the full circle.
@@ -19,7 +20,7 @@ pub(super) struct Shape {
 impl Shape {
     pub(super) fn new(start: Point, end: Point, centre: Point, sense: Sense) -> Self {
         let quarters = quarter_turns(start - centre, end - centre, sense);
-        Self { centre_um: centre * 1000.0, sense, quarters }
+        Self { start_um: start * 1000.0, centre_um: centre * 1000.0, sense, quarters }
     }
 }
 
@@ -34,10 +35,20 @@ pub(super) fn choose(stand: Stand, goal: Goal, shape: Shape) -> Result<Option<Ch
     let (sx, sy) = (toward(ideal.x), toward(ideal.y));
 
     let mut best: Option<Choice> = None;
+    if goal.theory_first {
+        let first: Vector = shape.start_um - shape.centre_um;
+        let first = Position::new(first.x.round() as i64, first.y.round() as i64);
+        for g in [None, Some(Axis::X), Some(Axis::Y)] {
+            consider(stand, goal, shape, first, g, &mut best);
+            if best.is_some_and(|b| b.end == goal.at) {
+                return Ok(best);
+            }
+        }
+    }
     for ring in [&NEAR[..], &FAR[..]] {
         for &(dx, dy) in ring {
             let first = middle + Position::new(sx * dx, sy * dy);
-            consider(stand, goal, shape, first, &mut best);
+            consider(stand, goal, shape, first, None, &mut best);
             if best.is_some_and(|b| goal.admits(b.end, AT_ONCE_UM)) {
                 return Ok(best);
             }
@@ -49,15 +60,24 @@ pub(super) fn choose(stand: Stand, goal: Goal, shape: Shape) -> Result<Option<Ch
     if best.is_some_and(|b| goal.admits(b.end, stand.limit_um())) { Ok(best) } else { Err(NoneFits) }
 }
 
-/// Tries the block that starts at `first`, seen from its centre.
-fn consider(stand: Stand, goal: Goal, shape: Shape, first: Position, best: &mut Option<Choice>) {
+/// Tries the block that starts at `first`, seen from its centre, and counts along `g`, or along the axis that is right for
+/// where it ends.
+#[inline]
+fn consider(
+    stand: Stand,
+    goal: Goal,
+    shape: Shape,
+    first: Position,
+    g: Option<Axis>,
+    best: &mut Option<Choice>,
+) {
     let last = goal.at - stand.at + first;
     let Ok(branch) = Branch::at(first, shape.sense) else { return };
     let Some((quarter, u, v)) = Branch::frame(last, shape.sense) else { return };
     let Some(crossed) = crossings(branch.quarter(), quarter, shape.quarters) else { return };
     // G is the axis with the smaller coordinate at the end: the one that moves faster there.
     let falling = branch.falling_axis(quarter);
-    let g = if u < v { falling } else { other(falling) };
+    let g = g.unwrap_or(if u < v { falling } else { other(falling) });
     let bend = match stand.aim {
         Aim::One(model) => model.bend(),
         Aim::Any => Bend::Inward,

@@ -45,16 +45,29 @@ pub(super) fn nearest(stand: Stand, goal: Goal) -> Option<Choice> {
     best.filter(|b| b.error < goal.error(stand.at))
 }
 
-/// A place to go by on the way to the goal, a micron beside the middle of a straight way that no single line serves, mm.
+/// A place to go by on the way to the goal where no single line serves, mm: a micron beside the middle, or, if it has to be
+/// exact, the first lattice point from which both halves are.
 pub(super) fn detour(stand: Stand, goal: Goal) -> Option<Point> {
     let way = goal.at - stand.at;
     let (x, y) = (way.x.0, way.y.0);
+    let point = |at: Position| Point::new(at.x.millimetres(), at.y.millimetres());
+    let beside = stand.at + Position::new(x / 2 + 1, y / 2);
+    let runs = |from: Position, to: Position| {
+        from != to && displacement(stand.aim, &Block::line(to - from)) == Some(to - from)
+    };
+    if goal.exactly {
+        let middles = NEIGHBOURS.map(|(dx, dy)| stand.at + Position::new(x / 2 + dx, y / 2 + dy));
+        let near = NEIGHBOURS.map(|(dx, dy)| stand.at + Position::new(dx, dy));
+        let mut places = [beside].into_iter().chain(middles).chain(near);
+        if let Some(by) = places.find(|&by| runs(stand.at, by) && runs(by, goal.at)) {
+            return Some(point(by));
+        }
+    }
     // Shorter than this there is no middle to go by; the lattice point beside the goal has to do.
     if x.abs().max(y.abs()) < 4 {
         return None;
     }
-    let middle = stand.at + Position::new(x / 2 + 1, y / 2);
-    Some(Point::new(middle.x.millimetres(), middle.y.millimetres()))
+    Some(point(beside))
 }
 
 /// Where the line ends, if every model aimed at agrees.

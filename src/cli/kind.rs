@@ -1,0 +1,134 @@
+//! What a file is: by `--from`, else by its suffix, else by its first lines.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use clap::ValueEnum;
+
+/// What a source is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub(super) enum Kind {
+    /// A 3B program
+    #[value(name = "3b")]
+    ThreeB,
+    /// A 4B program
+    #[value(name = "4b")]
+    FourB,
+    /// A G-code program without macros
+    Gcode,
+    /// A drawing
+    Dxf,
+    /// A part file, generated on demand
+    Part,
+}
+
+impl Kind {
+    /// Every kind, in the order of their names on the command line.
+    const ALL: [Self; 5] = [Self::ThreeB, Self::FourB, Self::Gcode, Self::Dxf, Self::Part];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::ThreeB => "3b",
+            Self::FourB => "4b",
+            Self::Gcode => "gcode",
+            Self::Dxf => "dxf",
+            Self::Part => "part",
+        }
+    }
+
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// What the name of a file says it is; failing that, its first bytes. What can be read only once is not looked into.
+    pub(super) fn of(word: &str, is_file: bool) -> Option<Self> {
+        let path = Path::new(word);
+        let suffix = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        match suffix.as_deref() {
+            Some("3b") => Some(Self::ThreeB),
+            Some("4b") => Some(Self::FourB),
+            Some("nc" | "iso" | "ngc" | "gcode" | "cnc" | "tap" | "mpf" | "min" | "eia") => Some(Self::Gcode),
+            Some("dxf") => Some(Self::Dxf),
+            Some("toml") => Some(Self::Part),
+            _ if !is_file => None,
+            _ => {
+                let mut head = [0; 4096];
+                let count = File::open(path).and_then(|mut file| file.read(&mut head)).ok()?;
+                of_content(&head[..count])
+            }
+        }
+    }
+}
+
+/// What the first lines of a text look like.
+fn of_content(head: &[u8]) -> Option<Kind> {
+    let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
+    let mut lines = head.split(|&b| b == b'\n' || b == b'\r').map(<[u8]>::trim_ascii);
+    if lines.clone().any(|line| line == b"[part]") {
+        return Some(Kind::Part);
+    }
+    if head.starts_with(b"AutoCAD Binary DXF") {
+        return Some(Kind::Dxf);
+    }
+    let mut significant = lines.clone().filter(|line| !line.is_empty());
+    if significant.next() == Some(b"0") && significant.next() == Some(b"SECTION") {
+        return Some(Kind::Dxf);
+    }
+    // The first line that is a block of either grammar decides.
+    lines.find_map(|line| match blocks_in(line) {
+        Some(letters) if letters >= 4 => Some(Kind::FourB),
+        Some(_) => Some(Kind::ThreeB),
+        None => is_gcode(line).then_some(Kind::Gcode),
+    })
+}
+
+/// How many B words begin the first block in a line, if it holds a 3B or 4B block.
+fn blocks_in(line: &[u8]) -> Option<usize> {
+    let mut count = 0;
+    for byte in line {
+        match byte.to_ascii_uppercase() {
+            b'B' => count += 1,
+            b'0'..=b'9' | b' ' | b'\t' | b'.' => {}
+            b'G' | b'X' | b'Y' | b'D' if count >= 3 => return Some(count),
+            _ => count = 0,
+        }
+    }
+    None
+}
+
+/// Whether a line begins as a block of G-code.
+fn is_gcode(line: &[u8]) -> bool {
+    let line = line.strip_prefix(b"/").unwrap_or(line).trim_ascii_start();
+    let numbered = |line: &[u8]| -> Option<usize> {
+        let digits = line.get(1..)?.iter().take_while(|b| b.is_ascii_digit()).count();
+        (digits > 0).then_some(digits + 1)
+    };
+    match line.first().map(u8::to_ascii_uppercase) {
+        Some(b'N') => numbered(line).is_some_and(|end| is_gcode(line[end..].trim_ascii_start())),
+        Some(b'G' | b'M' | b'O') => numbered(line).is_some(),
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_block_tells_what_a_text_is() {
+        for (text, kind) in [
+            ("***\nStart Point = 0 ; X , Y\nN   1: B 5000 B 0 B 5000 GX L1\n", Some(Kind::ThreeB)),
+            ("%\nbbb9900gxl1b0", Some(Kind::ThreeB)),
+            ("B5000B0B5000B2000DDGXNR1\n", Some(Kind::FourB)),
+            ("%\nO0001 (PUNCH)\nG92 X0 Y0\n", Some(Kind::Gcode)),
+            ("(PUNCH)\n/N10 G90 G1X1.\n", Some(Kind::Gcode)),
+            ("  0\r\nSECTION\r\n  2\r\nHEADER\r\n", Some(Kind::Dxf)),
+            ("# a part\n[part]\nkind = \"gear\"\n", Some(Kind::Part)),
+            ("hello world\nNothing here\n", None),
+            ("", None),
+        ] {
+            assert_eq!(of_content(text.as_bytes()), kind, "{text}");
+        }
+    }
+}

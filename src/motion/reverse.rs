@@ -1,0 +1,382 @@
+//! The same contours cut backwards (反割), each from its own start hole and back to it.
+//!
+//! A contour's elements are reversed and so is their order; what led in leads out. The side of an offset or a taper
+//! changes; a 4B flag does not, for an arc that is convex stays so, and the flag of a lead-in stays with the move that
+//! leads in. Settings made on the way (an offset put on, a cutting condition) hold for the same moves as before. The
+//! contours keep their order. One contour is held at a time.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use super::runs::{ContourError, Layout, MEET_MM, Portion, Run, Runs};
+use super::{Act, Flag, Motion, Offset, Taper};
+use crate::geometry::{Element, Point};
+
+/// Reverses a program contour by contour.
+#[derive(Debug)]
+pub struct Reversed<I> {
+    runs: Runs<I>,
+    ready: VecDeque<Motion>,
+    settings: Settings,
+}
+
+impl<I, E> Reversed<I>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<ContourError>,
+{
+    /// The program cut backwards.
+    pub fn new(motions: I) -> Self {
+        Self { runs: Runs::new(motions), ready: VecDeque::new(), settings: Settings::default() }
+    }
+}
+
+impl<I, E> Iterator for Reversed<I>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<ContourError>,
+{
+    type Item = Result<Motion, ContourError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(motion) = self.ready.pop_front() {
+                return Some(Ok(motion));
+            }
+            match self.runs.next()? {
+                Ok(Portion::Between(mut motion)) => {
+                    note(&mut self.settings, &motion);
+                    motion.act = other_side(motion.act);
+                    return Some(Ok(motion));
+                }
+                Ok(Portion::Run(run)) => match reversed(run, &mut self.settings) {
+                    Ok(motions) => self.ready = motions.into(),
+                    Err(error) => return Some(Err(error)),
+                },
+                Err(error) => return Some(Err(error)),
+            }
+        }
+    }
+}
+
+/// What stays in force until it is changed: by its address, the motion that set it.
+type Settings = BTreeMap<Vec<u8>, Motion>;
+
+/// Notes a setting; whether it is one.
+fn note(settings: &mut Settings, motion: &Motion) -> bool {
+    let Some(address) = address(&motion.act) else { return false };
+    settings.insert(address, motion.clone());
+    true
+}
+
+/// The address of a setting: of a word, its letters. An M function is done once, and a line number is no setting.
+fn address(act: &Act) -> Option<Vec<u8>> {
+    match act {
+        Act::Offset(_) => Some(b"offset".to_vec()),
+        Act::Taper(_) => Some(b"taper".to_vec()),
+        Act::Word(word) | Act::Unknown(word) => {
+            let letters: Vec<u8> =
+                word.iter().take_while(|b| b.is_ascii_alphabetic()).map(u8::to_ascii_uppercase).collect();
+            (!matches!(letters.as_slice(), b"" | b"M" | b"N" | b"O")).then_some(letters)
+        }
+        Act::Move { .. } | Act::Stop(_) | Act::Dwell(_) | Act::Comment(_) | Act::Header(_) => None,
+    }
+}
+
+/// A move of a run, with what is in force on it and what stands around it.
+struct Cut {
+    motion: Motion,
+    settings: Settings,
+    /// What is said just before the move and stays with it.
+    remarks: Vec<Motion>,
+    /// What happens at the node before the move: stops, functions.
+    at_node: Vec<Motion>,
+    backwards: bool,
+}
+
+/// A run cut backwards.
+fn reversed(run: Run, settings: &mut Settings) -> Result<Vec<Motion>, ContourError> {
+    let layout = run.layout();
+    if let (false, Some((first, _))) = (layout.closed, run.cuts().next()) {
+        return Err(ContourError::at(
+            &run.motions[first],
+            "a contour that does not come back to where it began",
+            "backwards it would begin elsewhere, where there is no start hole; cut it forwards, or close it",
+        ));
+    }
+    let before = settings.clone();
+    let (mut cuts, mut remarks, mut at_node): (Vec<Cut>, Vec<Motion>, Vec<Motion>) = Default::default();
+    for motion in run.motions {
+        match motion.act {
+            Act::Move { .. } => cuts.push(Cut {
+                motion,
+                settings: settings.clone(),
+                remarks: std::mem::take(&mut remarks),
+                at_node: std::mem::take(&mut at_node),
+                backwards: false,
+            }),
+            Act::Comment(_) | Act::Header(_) => remarks.push(motion),
+            _ if note(settings, &motion) => {}
+            _ => at_node.push(motion),
+        }
+    }
+    turn_round(&mut cuts, layout);
+    let (mut motions, mut in_force) = (Vec::new(), before);
+    for cut in cuts {
+        change(&mut in_force, &cut.settings, &cut.motion, &mut motions)?;
+        // A move run backwards comes to the node it began at.
+        let (before, behind) =
+            if cut.backwards { (Vec::new(), cut.at_node) } else { (cut.at_node, Vec::new()) };
+        motions.extend(before.into_iter().chain(cut.remarks).chain([cut.motion]).chain(behind));
+    }
+    // What was said behind the last cut comes behind the last cut.
+    if let Some(last) = motions.last().cloned() {
+        change(&mut in_force, settings, &last, &mut motions)?;
+    }
+    motions.extend(remarks.into_iter().chain(at_node));
+    Ok(motions)
+}
+
+/// Puts in force what holds for a move.
+fn change(
+    in_force: &mut Settings,
+    wanted: &Settings,
+    motion: &Motion,
+    motions: &mut Vec<Motion>,
+) -> Result<(), ContourError> {
+    for (address, now) in in_force.iter() {
+        let off = match now.act {
+            Act::Offset(Offset::On { .. }) => Act::Offset(Offset::Off),
+            Act::Taper(Taper::On { .. }) => Act::Taper(Taper::Off),
+            _ => continue,
+        };
+        if !wanted.contains_key(address) {
+            motions.push(Motion { act: off, ..motion.clone() });
+        }
+    }
+    let never_set = |(address, now): (&Vec<u8>, &Motion)| {
+        !wanted.contains_key(address) && matches!(now.act, Act::Word(_) | Act::Unknown(_))
+    };
+    if let Some((_, set)) = in_force.iter().find(|&entry| never_set(entry)) {
+        return Err(ContourError::at(
+            set,
+            "a word set for the first time within a contour",
+            "backwards it would hold from the start, and what held before it is not said: set it before the contour too",
+        ));
+    }
+    for (address, set) in wanted {
+        let now = in_force.get(address).map(|now| &now.act);
+        let off = matches!(set.act, Act::Offset(Offset::Off) | Act::Taper(Taper::Off));
+        if now != Some(&set.act) && !(off && now.is_none()) {
+            motions.push(Motion { act: other_side(set.act.clone()), ..set.clone() });
+        }
+    }
+    in_force.clone_from(wanted);
+    Ok(())
+}
+
+/// Turns the moves round: the whole run if it ends where it began, else the outline between its leads.
+fn turn_round(cuts: &mut [Cut], layout: Layout) {
+    let (Some(first), Some(last)) = (cuts.first(), cuts.last()) else { return };
+    let (begins, ends) = (of(first).start(), of(last).end());
+    let count = cuts.len();
+    let whole = (begins - ends).norm() <= MEET_MM;
+    let range = if whole { 0..count } else { layout.lead_in..count - layout.lead_out };
+    let (from, to) = match cuts.get(range.clone()) {
+        Some([only]) => (of(only).start(), of(only).end()),
+        Some([first, .., last]) => (of(first).start(), of(last).end()),
+        Some([]) | None => return,
+    };
+    cuts[range.clone()].reverse();
+    for cut in &mut cuts[range.clone()] {
+        cut.backwards = true;
+        if let Act::Move { element, upper, .. } = &mut cut.motion.act {
+            *element = element.reversed();
+            *upper = upper.map(Element::reversed);
+        }
+    }
+    // A contour that closed a few microns off begins and ends where it did.
+    if let Act::Move { element, .. } = &mut cuts[range.start].motion.act {
+        *element = with_start(*element, from);
+    }
+    if let Act::Move { element, .. } = &mut cuts[range.end - 1].motion.act {
+        *element = with_start(element.reversed(), to).reversed();
+    }
+    if whole {
+        for n in 0..layout.lead_in.min(count / 2) {
+            let leading_out = count - 1 - n;
+            let (a, b) = (flag_of(&cuts[n]), flag_of(&cuts[leading_out]));
+            set_flag(&mut cuts[n], b);
+            set_flag(&mut cuts[leading_out], a);
+        }
+    }
+}
+
+fn of(cut: &Cut) -> Element {
+    match cut.motion.act {
+        Act::Move { element, .. } => element,
+        _ => unreachable!("only moves are cuts"),
+    }
+}
+
+fn flag_of(cut: &Cut) -> Option<Flag> {
+    match cut.motion.act {
+        Act::Move { flag, element: Element::Line { .. }, .. } => flag,
+        _ => None,
+    }
+}
+
+fn set_flag(cut: &mut Cut, to: Option<Flag>) {
+    if let Act::Move { flag, element: Element::Line { .. }, .. } = &mut cut.motion.act {
+        *flag = to;
+    }
+}
+
+fn with_start(element: Element, start: Point) -> Element {
+    match element {
+        Element::Line { end, .. } => Element::Line { start, end },
+        // A full circle stays one.
+        Element::Arc { start: own, end, .. } if own == end => element,
+        Element::Arc { end, centre, sense, .. } => Element::Arc { start, end, centre, sense },
+    }
+}
+
+/// The same thing seen the other way.
+fn other_side(act: Act) -> Act {
+    match act {
+        Act::Offset(Offset::On { side, distance, register }) => {
+            Act::Offset(Offset::On { side: side.opposite(), distance, register })
+        }
+        Act::Taper(Taper::On { side, angle }) => Act::Taper(Taper::On { side: side.opposite(), angle }),
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Sense;
+    use crate::motion::{Side, Stop, Travel};
+    use crate::place::Spot;
+
+    fn said(act: Act) -> Motion {
+        Motion { act, block: 1, spot: Spot::default() }
+    }
+
+    fn point(at: (f64, f64)) -> Point {
+        Point::new(at.0, at.1)
+    }
+
+    fn cut(from: (f64, f64), to: (f64, f64), flag: Option<Flag>) -> Motion {
+        let element = Element::Line { start: point(from), end: point(to) };
+        said(Act::Move { travel: Travel::Cut, element, upper: None, flag })
+    }
+
+    /// From the hole at the origin to a half disc, round it, and back.
+    fn half_disc() -> Vec<Motion> {
+        let arc = Element::Arc {
+            start: point((6.0, 2.0)),
+            end: point((2.0, 2.0)),
+            centre: point((4.0, 2.0)),
+            sense: Sense::CounterClockwise,
+        };
+        vec![
+            cut((0.0, 0.0), (2.0, 2.0), Some(Flag::D)),
+            cut((2.0, 2.0), (6.0, 2.0), None),
+            said(Act::Move { travel: Travel::Cut, element: arc, upper: None, flag: Some(Flag::D) }),
+            cut((2.0, 2.0), (0.0, 0.0), None),
+        ]
+    }
+
+    fn reverse(motions: Vec<Motion>) -> Result<Vec<Motion>, ContourError> {
+        Reversed::new(motions.into_iter().map(Ok::<_, ContourError>)).collect()
+    }
+
+    /// What is done, briefly.
+    fn brief(motions: &[Motion]) -> Vec<String> {
+        let of = |motion: &Motion| match &motion.act {
+            Act::Move { element: Element::Line { end, .. }, flag, .. } => {
+                format!("{},{} {flag:?}", end.x, end.y)
+            }
+            Act::Move { element: Element::Arc { end, sense, .. }, flag, .. } => {
+                format!("{sense:?} {},{} {flag:?}", end.x, end.y)
+            }
+            Act::Offset(Offset::On { side, .. }) => format!("{side:?}"),
+            Act::Word(word) | Act::Comment(word) => String::from_utf8_lossy(word).into_owned(),
+            other => format!("{other:?}"),
+        };
+        motions.iter().map(of).collect()
+    }
+
+    fn offset(side: Side) -> Motion {
+        said(Act::Offset(Offset::On { side, distance: Some(0.1), register: None }))
+    }
+
+    #[test]
+    fn a_contour_is_cut_backwards_from_its_own_hole() {
+        let mut motions = vec![offset(Side::Left)];
+        motions.extend(half_disc());
+        motions.push(said(Act::Stop(Stop::End)));
+        let backwards = reverse(motions.clone()).unwrap();
+        assert_eq!(
+            brief(&backwards),
+            ["Right", "2,2 Some(D)", "Clockwise 6,2 Some(D)", "2,2 None", "0,0 None", "Stop(End)"]
+        );
+        assert_eq!(reverse(backwards).unwrap(), motions);
+    }
+
+    #[test]
+    fn a_contour_without_a_way_out_keeps_its_way_in() {
+        let backwards = reverse(half_disc()[..3].to_vec()).unwrap();
+        assert_eq!(brief(&backwards), ["2,2 Some(D)", "Clockwise 6,2 Some(D)", "2,2 None"]);
+    }
+
+    #[test]
+    fn what_holds_for_a_move_holds_for_it_backwards() {
+        let word = |text: &str| said(Act::Word(text.as_bytes().into()));
+        let [lead_in, line, arc, lead_out]: [Motion; 4] = half_disc().try_into().unwrap();
+        let motions = vec![
+            word("C001"),
+            lead_in,
+            offset(Side::Left),
+            word("C002"),
+            line,
+            said(Act::Stop(Stop::Pause)),
+            said(Act::Comment(b"the round side".as_slice().into())),
+            arc,
+            said(Act::Offset(Offset::Off)),
+            word("M50"),
+            lead_out,
+            word("M02"),
+        ];
+        let backwards = reverse(motions).unwrap();
+        assert_eq!(
+            brief(&backwards),
+            [
+                "C001",
+                "C002",
+                "2,2 Some(D)",
+                "M50",
+                "Right",
+                "the round side",
+                "Clockwise 6,2 Some(D)",
+                "Stop(Pause)",
+                "2,2 None",
+                "Offset(Off)",
+                "C001",
+                "0,0 None",
+                "C002",
+                "M02"
+            ]
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_cut_backwards_is_refused() {
+        let open = reverse(half_disc()[..2].to_vec()).unwrap_err().to_string();
+        assert!(open.contains("block 1: a contour that does not come back"), "{open}");
+        let mut motions = half_disc();
+        motions.insert(2, said(Act::Word(b"C002".as_slice().into())));
+        let unset = reverse(motions).unwrap_err().to_string();
+        assert!(unset.contains("set for the first time"), "{unset}");
+    }
+}

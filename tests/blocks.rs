@@ -1,0 +1,6 @@
+//! 3B and 4B programs through motions and back, judged by the mock's interpolators: a second reading of the manuals.
+
+#[path = "blocks/programs.rs"]
+mod programs;
+#[path = "blocks/round_trip.rs"]
+mod round_trip;

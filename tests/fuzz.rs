@@ -1,0 +1,8 @@
+//! Arbitrary bytes into every reader: refused or read, but never a panic, and nothing lost in silence.
+//!
+//! `cargo test --test fuzz` tries each for a moment; `cargo bolero test three_b::…` goes on for as long as one likes.
+
+#[path = "fuzz/four_b.rs"]
+mod four_b;
+#[path = "fuzz/three_b.rs"]
+mod three_b;

@@ -1,0 +1,1 @@
+//! ezdxf against the reader and the writer of drawings.

@@ -1,0 +1,1 @@
+//! LinuxCNC's `rs274` against the writer of G-code.

@@ -1,0 +1,1 @@
+//! shapely against the offsets of outlines.
