@@ -85,7 +85,7 @@ fn the_oracle_sees_what_is_lost_shifted_cut_twice_or_too_early() {
         back.act = moved(cut(&motion).unwrap().reversed());
         all.splice(cuts[2]..=cuts[2], [motion.clone(), back, motion]);
     };
-    assert!(check(&twice).unwrap_err().contains("times"));
+    assert!(check(&twice).unwrap_err().contains("beside the contour, not"));
     let shift = |all: &mut Vec<Motion>| {
         for motion in all {
             if let Act::Move { element, .. } = &mut motion.act {
@@ -279,17 +279,24 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
     let whole = path.length();
     let mut over: Vec<f64> = tabs.iter().flat_map(|tab| [tab.0, tab.1]).collect();
     over.extend([0.0, whole]);
-    for element in outline.elements() {
-        for (point, _) in samples(element, 3) {
+    let ways: Vec<Path> = outline.elements().iter().filter_map(|way| Path::new(vec![*way])).collect();
+    for (n, element) in outline.elements().iter().enumerate() {
+        let count = (element.length() / 0.1).clamp(3.0, 60.0) as usize;
+        for (point, _) in samples(element, count) {
             let along = along(path, point);
             // Near an end of a piece, a hair to either side makes the difference; an overcut reaches past it.
-            let near_end = over.iter().any(|end| (at(path, *end) - point).norm() <= by + 6.0 * UM);
-            if near_end {
+            let reach = |end: &f64| (at(path, *end) - point).norm() - distance(outline, at(path, *end)).max(by);
+            let near_end = over.iter().any(|end| reach(end) <= 6.0 * UM);
+            // In a slot as wide as the kerf the path lies on itself.
+            let beside_itself = ways.iter().enumerate().any(|(m, way)| {
+                n.abs_diff(m) > 1 && n.abs_diff(m) + 1 < ways.len() && distance(way, point) <= 5.0 * UM
+            });
+            if near_end || beside_itself {
                 continue;
             }
             let tab = tabs.iter().any(|(from, to)| *from < along && along < *to);
             let mut runs: Vec<&Cut> = Vec::new();
-            let mut last = None;
+            let mut last: Option<usize> = None;
             for (n, cut) in cuts.iter().enumerate().filter(|(_, cut)| cut.pass == pass && cut.beside) {
                 let one = Path::new(vec![cut.element]).ok_or("an empty element")?;
                 if distance(&one, point) <= 1.5 * UM {
@@ -299,7 +306,10 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
                     last = Some(n);
                 }
             }
-            let most = if in_overcut(path, plan, &over, point, by) { 3 } else { 1 };
+            // A wire that stays on its path begins each pass where the last overcut ended.
+            let overcuts = if plan.lead_out.is_none() { plan.passes().count() as f64 } else { 1.0 };
+            let in_overcut = over.iter().any(|end| reach(end) <= plan.overcut * overcuts + 6.0 * UM);
+            let most = if in_overcut { 3 } else { 1 };
             if runs.is_empty() || runs.len() > most {
                 return Err(format!("{point} is cut {} times in pass {pass}", runs.len()));
             }
@@ -313,11 +323,6 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
         }
     }
     Ok(())
-}
-
-/// Whether a point of the wire's path may be reached by an overcut from an end of a piece.
-fn in_overcut(path: &Path, plan: &Plan, ends: &[f64], point: Point, by: f64) -> bool {
-    ends.iter().any(|end| (at(path, *end) - point).norm() <= by + plan.overcut + 6.0 * UM)
 }
 
 /// Where tabs lie along the contour, mm.
