@@ -26,6 +26,7 @@ mod kind;
 mod machines;
 mod motions;
 mod output;
+mod plan;
 mod plot;
 mod question;
 mod registers;

@@ -108,7 +108,7 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
         restart_points: options.restart_points,
         syntax_only: options.syntax_only,
     });
-    for found in &motions.report {
+    for found in motions.drawn.iter().flat_map(|drawing| &drawing.report) {
         let severity = match found.severity {
             drawing::Severity::Fault => Severity::Error,
             drawing::Severity::Warning => Severity::Warning,

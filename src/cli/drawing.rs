@@ -84,7 +84,7 @@ impl OfDrawing {
             || self.direction.is_some()
     }
 
-    fn options(&self, start: Option<Point>) -> dxf::Options {
+    fn options(&self, starts: &[Point]) -> dxf::Options {
         let standard = dxf::Options::default();
         let sense = self.direction.map(|direction| match direction {
             Turn::Cw => Sense::Clockwise,
@@ -109,26 +109,29 @@ impl OfDrawing {
                 OrderWord::AsDrawn => Order::AsDrawn,
                 OrderWord::InSequence => Order::InSequence,
             }),
-            start: start.map_or(standard.start, |point| Start::At(vec![point])),
+            start: if starts.is_empty() { standard.start } else { Start::At(starts.to_vec()) },
             direction: Direction { outlines: sense, holes: sense },
             ..standard
         }
     }
 
     /// Reads a drawing.
-    pub(super) fn read(&self, word: &str, start: Option<Point>) -> Result<Drawing, Failure> {
+    pub(super) fn read(&self, word: &str, starts: &[Point]) -> Result<Drawing, Failure> {
         let text: Box<dyn Read> = if word == "-" {
             Box::new(io::stdin().lock())
         } else {
             Box::new(File::open(word).map_err(|error| source::unreadable(word, &error))?)
         };
-        dxf::read(text, &self.options(start)).map_err(|error| Failure::read(word, error))
+        dxf::read(text, &self.options(starts)).map_err(|error| Failure::read(word, error))
     }
 }
 
-/// Tells what was found, what stands in the way last; a drawing that says no single thing to cut is refused.
-pub(super) fn tell(word: &str, report: &[Finding]) -> Result<(), Failure> {
-    for finding in report.iter().filter(|finding| finding.severity < Severity::Fault) {
+/// Tells what was found in a drawing, what stands in the way last; one that says no single thing to cut is refused.
+pub(super) fn tell(word: &str, drawing: Option<&Drawing>) -> Result<(), Failure> {
+    let report = drawing.map_or(&[][..], |drawing| &drawing.report);
+    // Where the wire enters is meant as a start hole, which lies beside its contour.
+    let is_told = |finding: &&Finding| finding.severity < Severity::Fault && finding.code != "start-beside";
+    for finding in report.iter().filter(is_told) {
         let note = if finding.severity == Severity::Note { "" } else { "warning: " };
         say!("{note}{word}: {finding}{}", help(finding));
     }

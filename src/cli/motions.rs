@@ -15,7 +15,7 @@ use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::source;
-use crate::drawing::finding::Finding;
+use crate::drawing::dxf::Drawing;
 use crate::formats::ReadError;
 use crate::formats::gcode::{self, Dialect};
 use crate::formats::lines::Line;
@@ -43,7 +43,7 @@ pub(super) struct Reading {
     pub(super) drawing: drawing::OfDrawing,
     /// Where the wire enters a drawing.
     #[arg(skip)]
-    pub(super) start: Option<Point>,
+    pub(super) starts: Vec<Point>,
 }
 
 impl Reading {
@@ -68,8 +68,8 @@ pub(super) struct Motions {
     pub(super) places: Places,
     source: Source,
     part: Option<Part>,
-    /// What was found in a drawing.
-    pub(super) report: Vec<Finding>,
+    /// The drawing the motions are of.
+    pub(super) drawn: Option<Drawing>,
 }
 
 /// Where to look up what stands at a spot.
@@ -131,7 +131,7 @@ impl Motions {
             return Err(Failure::new(Exit::Usage, message)
                 .help("leave out what goes with drawings only, or say --from dxf"));
         }
-        let (mut part, mut file, mut report) = (None, None, Vec::new());
+        let (mut part, mut file, mut drawn) = (None, None, None);
         let blocks = |motions| Source::Blocks { motions: Box::new(motions), base: Spot::default() };
         let source = match kind {
             Kind::Part => {
@@ -147,9 +147,9 @@ impl Motions {
                 }
             }
             Kind::Dxf => {
-                let drawing = reading.drawing.read(word, reading.start)?;
+                let drawing = reading.drawing.read(word, &reading.starts)?;
                 let motions: Vec<Motion> = drawing.motions().collect();
-                report = drawing.report;
+                drawn = Some(drawing);
                 Source::Made(Box::new(motions.into_iter()))
             }
             Kind::ThreeB | Kind::FourB | Kind::Gcode => {
@@ -176,7 +176,7 @@ impl Motions {
             }
         };
         let name = if word == "-" { "standard input".to_owned() } else { word.to_owned() };
-        Ok(Self { kind, places: Places { name, kind, file }, source, part, report })
+        Ok(Self { kind, places: Places { name, kind, file }, source, part, drawn })
     }
 
     /// The 3B block the last motion came from.

@@ -82,7 +82,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let model = Model::ALL.into_iter().find(|model| Some(model.name()) == named).unwrap_or(Model::Rotated);
     let simulated = (!options.no_simulation).then_some(model);
     let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, model)?;
-    if let Err(fault) = drawing::tell(&motions.places.name, &motions.report) {
+    if let Err(fault) = drawing::tell(&motions.places.name, motions.drawn.as_ref()) {
         // A drawing that cannot be cut as it is can be looked at.
         say!("{}", fault.render().trim_end());
     }

@@ -23,12 +23,7 @@ pub(super) struct Route {
 
 impl Route {
     /// The route of the contour with this number, from 0, when the wire stands at a point.
-    pub(super) fn of(
-        contours: &[Contour],
-        number: usize,
-        plan: &Plan,
-        at: Point,
-    ) -> Result<Self, Refusal> {
+    pub(super) fn of(contours: &[Contour], number: usize, plan: &Plan, at: Point) -> Result<Self, Refusal> {
         let contour = &contours[number];
         let refuse = |at, fault| Refusal { contour: number + 1, spot: contour.spot, at, fault };
         let course = course(contour).map_err(|(at, fault)| refuse(at, fault))?;
@@ -338,11 +333,8 @@ impl Cutter<'_> {
         let kerf = kerf[0].max(kerf[1]);
         for (other, contour) in self.contours.iter().enumerate() {
             let own = other == self.number;
-            let (elements, least) = if own {
-                (self.course.elements(), offset)
-            } else {
-                (contour.path.elements(), kerf)
-            };
+            let (elements, least) =
+                if own { (self.course.elements(), offset) } else { (contour.path.elements(), kerf) };
             let within = least - TOUCH.min(least / 2.0);
             if let Some(hit) = nearest_within(way, elements, within) {
                 let fault = Fault::CutsPart { lane, other: other + 1, distance: hit.distance, least };

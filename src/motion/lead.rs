@@ -24,6 +24,8 @@ enum State {
         from: Point,
         at: Point,
     },
+    /// Back in the hole, and the way on from the contour still to come.
+    Home,
     Behind,
 }
 
@@ -55,17 +57,20 @@ impl<I> FromHole<I> {
                 motion
             }
             (State::Round { from, at }, Act::Move { travel: Travel::Rapid, .. } | Act::Stop(_)) => {
-                self.state = State::Behind;
                 if from != at {
+                    self.state = State::Behind;
                     return motion;
                 }
+                self.state = State::Home;
                 let lead_out = self.cut(&motion, at, self.hole);
-                let mut next = motion;
-                if let Act::Move { element: Element::Line { start, .. }, .. } = &mut next.act {
-                    *start = self.hole;
-                }
-                self.waiting = Some(next);
+                self.waiting = Some(self.take(motion));
                 lead_out
+            }
+            (State::Home, Act::Move { element: Element::Line { end, .. }, .. }) => {
+                self.state = State::Behind;
+                let element = Element::Line { start: self.hole, end: *end };
+                let travel = Travel::Rapid;
+                Motion { act: Act::Move { travel, element, upper: None, flag: None }, ..motion }
             }
             _ => motion,
         }
@@ -119,6 +124,7 @@ mod tests {
         let round = [(1.0, 1.0), (9.0, 1.0), (9.0, 9.0), (1.0, 1.0)];
         let mut motions = vec![line(Rapid, (0.0, 0.0), (1.0, 1.0))];
         motions.extend(round.windows(2).map(|pair| line(Cut, pair[0], pair[1])));
+        motions.push(said(Act::Stop(Stop::Pause)));
         motions.push(line(Rapid, (1.0, 1.0), (20.0, 0.0)));
         motions.push(line(Cut, (20.0, 0.0), (21.0, 0.0)));
         motions.push(said(Act::Stop(Stop::End)));

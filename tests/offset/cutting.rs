@@ -67,7 +67,8 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
 #[test]
 fn the_oracle_sees_what_is_lost_shifted_cut_twice_or_too_early() {
     let (contour, plan) = block();
-    let motions: Vec<Motion> = Cutting::new(vec![contour.clone()], plan.clone()).unwrap().map(Result::unwrap).collect();
+    let motions: Vec<Motion> =
+        Cutting::new(vec![contour.clone()], plan.clone()).unwrap().map(Result::unwrap).collect();
     assert_eq!(fault(&contour, &plan, &motions), Ok(()));
     let stop = motions.iter().position(|motion| motion.act == Act::Stop(Stop::Pause)).unwrap();
     let cuts: Vec<usize> = (0..motions.len()).filter(|n| cut(&motions[*n]).is_some()).collect();
@@ -274,7 +275,13 @@ fn lengths(plan: &Plan, pass: usize, whole: f64, cuts: &[Cut]) -> Result<(), Str
 }
 
 /// Every point of the path is cut once in each pass, but for overcuts: stretches before any stop, tabs behind theirs.
-fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts: &[Cut]) -> Result<(), String> {
+fn once(
+    path: &Path,
+    plan: &Plan,
+    (pass, by): (usize, f64),
+    outline: &Path,
+    cuts: &[Cut],
+) -> Result<(), String> {
     let tabs = tabs(path, plan);
     let whole = path.length();
     let mut over: Vec<f64> = tabs.iter().flat_map(|tab| [tab.0, tab.1]).collect();
@@ -285,7 +292,8 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
         for (point, _) in samples(element, count) {
             let along = along(path, point);
             // Near an end of a piece, a hair to either side makes the difference; an overcut reaches past it.
-            let reach = |end: &f64| (at(path, *end) - point).norm() - distance(outline, at(path, *end)).max(by);
+            let reach =
+                |end: &f64| (at(path, *end) - point).norm() - distance(outline, at(path, *end)).max(by);
             let near_end = over.iter().any(|end| reach(end) <= 6.0 * UM);
             // In a slot as wide as the kerf the path lies on itself.
             let beside_itself = ways.iter().enumerate().any(|(m, way)| {
@@ -329,9 +337,10 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
 fn tabs(path: &Path, plan: &Plan) -> Vec<(f64, f64)> {
     let whole = path.length();
     match plan.tabs {
-        Tabs::Even { count, length } => {
-            (1..=count).map(|n| whole * f64::from(n) / f64::from(count)).map(|end| (end - length, end)).collect()
-        }
+        Tabs::Even { count, length } => (1..=count)
+            .map(|n| whole * f64::from(n) / f64::from(count))
+            .map(|end| (end - length, end))
+            .collect(),
         _ => Vec::new(),
     }
 }
