@@ -43,7 +43,7 @@ use crate::place::Spot;
 use crate::plot::Plot;
 use crate::rounding::Aim;
 
-/// Convert a program or drawing to another format; work out the wire's offset, or cut it backwards
+/// Write a program or drawing in another format, with an offset or backwards
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(super) struct Options {
