@@ -376,12 +376,14 @@ impl Made {
                         hole.x, hole.y
                     ));
                 }
-                account.push_str(&left_out(writer.lost()));
+                account.push_str(&left_out(writer.lost(), "left out"));
                 Ok(account)
             }
             Self::Gcode { mut writer, motions } => {
                 writer.finish(text).map_err(Unfinished::Write)?;
-                Ok(counted(motions, "motion"))
+                let mut account = counted(motions, "motion");
+                account.push_str(&left_out(writer.lost(), "kept as a remark"));
+                Ok(account)
             }
             Self::Picture { plot, to, moves } => {
                 let plotted = plot.finish();
@@ -408,10 +410,10 @@ fn counted(count: u64, what: &str) -> String {
 }
 
 /// What found no room, a line a kind.
-fn left_out(losses: &Losses) -> String {
+fn left_out(losses: &Losses, how: &str) -> String {
     let mut text = String::new();
     for loss in losses.iter() {
-        text.push_str(&format!("\nleft out: {}", counted(loss.count, loss.kind)));
+        text.push_str(&format!("\n{how}: {}", counted(loss.count, loss.kind)));
         if loss.first.line > 0 {
             text.push_str(&format!(", first in line {}", loss.first.line));
         }

@@ -125,7 +125,7 @@ impl Writer {
         let word: Vec<u8> = word.iter().map(|b| if matches!(b, b'\n' | b'\r') { b' ' } else { *b }).collect();
         let read = if self.is_ended { Read::Otherwise } else { self.read_again(&word) };
         if read == Read::Otherwise {
-            self.losses.add("word without a meaning in the dialect", motion.spot);
+            self.losses.add("foreign word", motion.spot);
             return self.comment(&word, motion, text);
         }
         self.open(text);
