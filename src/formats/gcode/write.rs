@@ -248,8 +248,7 @@ impl Writer {
             self.put(b"G50", motion.block, true);
             return Ok(());
         };
-        // NaN is none either.
-        if !(angle.abs() < 90.0) {
+        if !angle.is_finite() || angle.abs() >= 90.0 {
             return Err(refused(
                 motion.spot,
                 "the wire cannot lean so far",

@@ -12,7 +12,9 @@ use std::hint::black_box;
 
 use dripfeed::formats::gcode::{Blocks, Boundaries, Dialect};
 use futures::executor::block_on;
-use gcode::core::{BlockVisitor, CommandVisitor, ControlFlow, HasDiagnostics, Noop, Number, ProgramVisitor, Span, Value};
+use gcode::core::{
+    BlockVisitor, CommandVisitor, ControlFlow, HasDiagnostics, Noop, Number, ProgramVisitor, Span, Value,
+};
 
 use measured::{RUNS, program, row};
 
