@@ -13,6 +13,26 @@
 //! in it has a place that the wire cannot enter.
 //!
 //! Taper is passed on: it tilts the wire about the path and does not move it.
+//!
+//! ```
+//! use dripfeed::compensation::Compensated;
+//! use dripfeed::formats::gcode::{Dialect, Motions};
+//! use dripfeed::geometry::offset::Corners;
+//! use dripfeed::motion::{Act, Motion};
+//!
+//! let text = "G21 G90 G92 X0. Y0.\nG41 D1 G01 X5.\nG03 I-5. J0.\nG40 G01 X0.\nM02\n";
+//! let dialect = Dialect::named("generic").expect("a built-in dialect")?;
+//! let motions = Motions::new(text.as_bytes(), dialect);
+//! let mut wire = Compensated::new(motions, [(1, 0.1)].into(), Corners::Round);
+//! let made: Vec<Motion> = wire.by_ref().collect::<Result<_, _>>()?;
+//! let ends = made.iter().filter_map(|motion| match motion.act {
+//!     Act::Move { element, .. } => Some(element.end().x),
+//!     _ => None,
+//! });
+//! assert_eq!(ends.collect::<Vec<_>>(), [4.9, 4.9, 0.0]);
+//! assert!(wire.take_warnings().is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod local;
 pub mod put_on;
@@ -74,15 +94,12 @@ pub enum Fate {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Unreached { at, largest, .. } = self.unreached;
-        let what = match self.fate {
-            Fate::PassedBy => "the wire cannot enter the contour at",
-            Fate::CutInto => "the wire cuts into the contour at",
+        let (what, does) = match self.fate {
+            Fate::PassedBy => ("does not reach", "does"),
+            Fate::CutInto => ("cuts into", "does not"),
         };
-        let would = match self.fate {
-            Fate::PassedBy => "enter",
-            Fate::CutInto => "pass",
-        };
-        write!(f, "{what} X{:.4} Y{:.4}; an offset of at most {largest:.4} mm would {would}", at.x, at.y)
+        write!(f, "the wire {what} the contour at X{:.3} Y{:.3}; ", at.x, at.y)?;
+        write!(f, "the largest offset that {does} is {largest:.3} mm")
     }
 }
 
