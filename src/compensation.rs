@@ -153,7 +153,7 @@ enum State {
     /// An offset is switched on; the move that leads in is awaited.
     Starting { on: On },
     /// A contour is collected.
-    Running { on: On, run: Run },
+    Running { on: On, run: Box<Run> },
 }
 
 /// An offset that is switched on.
@@ -199,7 +199,7 @@ where
             State::Off => match motion.act {
                 Act::Offset(said) => self.switched(said, &motion)?,
                 Act::Move { .. } => {
-                    let moved = self.from_where_it_stands(motion)?;
+                    let moved = self.begun_where_it_stands(motion)?;
                     self.ready.push_back(Ok(moved));
                 }
                 _ => self.ready.push_back(Ok(motion)),
@@ -211,8 +211,8 @@ where
                     self.ready.push_back(Ok(motion));
                 }
                 Act::Move { element: Element::Line { .. }, upper: None, .. } => {
-                    let lead_in = self.from_where_it_stands(motion)?;
-                    self.state = State::Running { on, run: Run::new(lead_in) };
+                    let lead_in = self.begun_where_it_stands(motion)?;
+                    self.state = State::Running { on, run: Box::new(Run::new(lead_in)) };
                 }
                 Act::Move { .. } => {
                     return Err(fault(
@@ -283,7 +283,7 @@ where
     }
 
     /// A move begun where the wire stands: it leads out of an offset, or is any other.
-    fn from_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, CompensationError> {
+    fn begun_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, CompensationError> {
         let Act::Move { element, upper, .. } = &mut motion.act else { return Ok(motion) };
         let is_empty = matches!(element, Element::Line { start, end } if start == end);
         match (self.standing, *element) {

@@ -4,6 +4,8 @@
 //! hand go to it, non-convex and with arcs, inside and outside, with round corners and with sharp ones; so do outlines
 //! that come apart and lose features.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use std::io::Write as _;
 use std::process::Stdio;
 
