@@ -7,6 +7,8 @@
 mod compensation;
 #[path = "offset/contours.rs"]
 mod contours;
+#[path = "offset/cutting.rs"]
+mod cutting;
 #[path = "offset/formulas.rs"]
 mod formulas;
 #[path = "offset/leads.rs"]

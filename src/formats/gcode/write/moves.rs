@@ -80,13 +80,12 @@ impl Writer {
         self.axes(b"XY", start, &mut words);
         // What waits to share the block of the motion goes on waiting.
         let waiting = std::mem::take(&mut self.line);
-        let (is_path, number, skip) =
-            (self.line_is_path, std::mem::take(&mut self.number), std::mem::take(&mut self.skip));
-        let waiting_block = self.line_block;
-        self.put(&words, block, false);
-        self.flush(text);
+        let (is_path, waiting_block) = (self.line_is_path, self.line_block);
+        self.apart(text, |writer, text| {
+            writer.put(&words, block, false);
+            writer.flush(text);
+        });
         (self.line, self.line_is_path, self.line_block) = (waiting, is_path, waiting_block);
-        (self.number, self.skip) = (number, skip);
         start
     }
 
