@@ -68,7 +68,9 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         Some(name) => machines::load(name)?.profile,
         None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
-    let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, Model::Rotated)?;
+    // Wrong arcs are judged here, and so is what stands behind them.
+    let reading = Reading { keeps_wrong_arcs: true, ..options.reading.clone() };
+    let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {
         print_json(&as_json(&report, options))?;

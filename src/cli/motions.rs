@@ -32,6 +32,9 @@ pub(super) struct Reading {
     /// The control a G-code program is for: a built-in dialect or a dialect file [default: generic]
     #[arg(long, value_name = "NAME|FILE")]
     pub(super) dialect: Option<String>,
+    /// Whether arcs whose radii disagree are read as they are.
+    #[arg(skip)]
+    pub(super) keeps_wrong_arcs: bool,
 }
 
 /// What of a part is wanted.
@@ -113,7 +116,8 @@ impl Motions {
                 match kind {
                     Kind::FourB => blocks(three_b::motions::Motions::of_four_b(Box::new(text), model)),
                     Kind::Gcode => {
-                        let dialect = super::dialects::load(reading.dialect.as_deref())?;
+                        let mut dialect = super::dialects::load(reading.dialect.as_deref())?;
+                        dialect.keeps_wrong_arcs = reading.keeps_wrong_arcs;
                         let motions = gcode::Motions::of_file(text, dialect.clone())
                             .map_err(|error| Failure::read(word, error))?;
                         Source::Gcode {
