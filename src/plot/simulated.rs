@@ -56,21 +56,32 @@ impl Simulation {
         let pulses = self.model.pulses(block)?;
         let from = self.stands;
         let gauge = Gauge::of(element);
-        let (mut worst, mut worst_at) = (-1.0f64, from);
+        let (mut low, mut high) = ((f64::INFINITY, from), (f64::NEG_INFINITY, from));
         // A point is drawn when the wire is clear of the last one; the thinning does the rest.
         let clear = (self.path.tolerance_um() / 2.0) as i64;
         let mut at = from;
-        for pulse in pulses {
+        let (path, drawn, mut count) = (&mut self.path, &mut self.drawn, 0);
+        pulses.for_each(|pulse| {
             at = from + pulse;
-            self.pulses += 1;
-            let off = gauge.off_um(at);
-            if off > worst {
-                (worst, worst_at) = (off, at);
+            count += 1;
+            let measured = gauge.measure(at);
+            if measured < low.0 {
+                low = (measured, at);
+            }
+            if measured > high.0 {
+                high = (measured, at);
             }
             let (x, y) = (at.x.0, at.y.0);
-            if (x - self.drawn.0).abs() > clear || (y - self.drawn.1).abs() > clear {
-                self.drawn = (x, y);
-                self.path.push((x, y));
+            if (x - drawn.0).abs() > clear || (y - drawn.1).abs() > clear {
+                *drawn = (x, y);
+                path.push((x, y));
+            }
+        });
+        self.pulses += count;
+        let (mut worst, mut worst_at) = (-1.0, from);
+        for (measured, at) in [low, high] {
+            if measured.is_finite() && gauge.off_um(measured) > worst {
+                (worst, worst_at) = (gauge.off_um(measured), at);
             }
         }
         self.drawn = (at.x.0, at.y.0);
@@ -87,13 +98,24 @@ impl Simulation {
         Ok(())
     }
 
+    /// Lets go what has been drawn of the run in work: nothing was cut there.
+    pub(super) fn forget_run(&mut self) {
+        self.path.forget_run();
+    }
+
+    /// Ends a run where a contour has closed.
+    pub(super) fn end_run(&mut self) {
+        self.path.end_run();
+        self.path.push(self.drawn);
+    }
+
     /// The runs drawn, and how far they may be from the pulses, µm.
     pub(super) fn finish(self) -> (Vec<Outline>, f64) {
         self.path.finish()
     }
 }
 
-/// Measures the distance from an element's own line or circle, µm.
+/// Measures how far positions are from an element's own line or circle.
 #[derive(Clone, Copy, Debug)]
 enum Gauge {
     Line { from: [f64; 2], across: [f64; 2] },
@@ -114,18 +136,27 @@ impl Gauge {
         }
     }
 
+    /// A number that grows from one side of the element to the other, cheap enough for each pulse.
     #[inline]
-    fn off_um(&self, at: Position) -> f64 {
+    fn measure(&self, at: Position) -> f64 {
         let seen = |from: &[f64; 2]| [at.x.0 as f64 - from[0], at.y.0 as f64 - from[1]];
         match self {
             Self::Line { from, across } => {
                 let [x, y] = seen(from);
-                (x * across[0] + y * across[1]).abs()
+                x * across[0] + y * across[1]
             }
-            Self::Circle { centre, radius } => {
+            Self::Circle { centre, .. } => {
                 let [x, y] = seen(centre);
-                ((x * x + y * y).sqrt() - radius).abs()
+                x * x + y * y
             }
+        }
+    }
+
+    /// The distance that a measure stands for, µm.
+    fn off_um(&self, measured: f64) -> f64 {
+        match self {
+            Self::Line { .. } => measured.abs(),
+            Self::Circle { radius, .. } => (measured.sqrt() - radius).abs(),
         }
     }
 }
