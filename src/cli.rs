@@ -17,6 +17,7 @@ mod convert;
 #[cfg(feature = "demo")]
 mod demo;
 mod dialects;
+mod drawing;
 mod failure;
 mod feeding;
 mod generate;
@@ -25,6 +26,7 @@ mod kind;
 mod machines;
 mod motions;
 mod output;
+mod plan;
 mod plot;
 mod question;
 mod registers;

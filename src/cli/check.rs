@@ -24,8 +24,10 @@ use super::motions::{Motions, OfPart, Reading};
 use super::registers::Registers;
 use super::{machines, print, print_json};
 use crate::check::{Check, Finding, Format, Kept, Looked, Report, Settings, Severity, wire};
+use crate::drawing::finding as drawing;
 use crate::interpolator::Model;
 use crate::motion::Motion;
+use crate::place::Spot;
 use crate::profile::Profile;
 
 /// Check a program: everything wrong with it in one run, nothing is sent
@@ -34,8 +36,6 @@ pub(super) struct Options {
     /// A program, a part file, or - for standard input
     #[arg(value_name = "IN")]
     input: String,
-    #[command(flatten)]
-    reading: Reading,
     #[command(flatten)]
     registers: Registers,
     /// The machine to check against: a built-in profile or a file [default: generic-iso]
@@ -53,6 +53,8 @@ pub(super) struct Options {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -68,7 +70,9 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         Some(name) => machines::load(name)?.profile,
         None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
-    let reading = Reading { of_machine: profile.dialect.clone(), ..options.reading.clone() };
+    // Wrong arcs are judged here, and so is what stands behind them.
+    let reading =
+        Reading { of_machine: profile.dialect.clone(), keeps_wrong_arcs: true, ..options.reading.clone() };
     let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {
@@ -106,6 +110,17 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
         restart_points: options.restart_points,
         syntax_only: options.syntax_only,
     });
+    for found in motions.drawn.iter().flat_map(|drawing| &drawing.report) {
+        let severity = match found.severity {
+            drawing::Severity::Fault => Severity::Error,
+            drawing::Severity::Warning => Severity::Warning,
+            // What is as it should be is no finding.
+            drawing::Severity::Note => continue,
+        };
+        let spot = Spot { line: found.line, column: u64::from(found.line > 0), byte: 0 };
+        let (message, help) = (found.to_string(), found.help.clone());
+        check.add(Finding { severity, code: found.code, spot, width: 0, block: 0, message, help });
+    }
     if motions.kind == Kind::Gcode {
         let check = RefCell::new(&mut check);
         let next = || next_of(motions, &mut check.borrow_mut());

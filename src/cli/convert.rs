@@ -10,7 +10,6 @@
 //! Motions pass one at a time, contours one at a time where they must be seen whole. What the format of OUT has no room
 //! for is counted and told; what it cannot say is refused, with its place in IN.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -19,17 +18,23 @@ use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Places, Reading};
 use super::output::Output;
-use super::{dialects, plot};
+use super::registers::Registers;
+use super::{dialects, drawing, plan, plot};
+use crate::compensation::Compensated;
 use crate::compensation::put_on::PutOn;
-use crate::compensation::{Compensated, Warning};
-use crate::formats::gcode;
+use crate::cutting::Refusal;
+use crate::drawing::dxf::DxfWriter;
+use crate::formats::four_b::offset::Keyed;
+use crate::formats::four_b::write::ToKey;
 use crate::formats::losses::Losses;
 use crate::formats::three_b::write as three_b;
 use crate::formats::{WriteError, Writer};
+use crate::formats::{four_b, gcode};
 use crate::geometry::offset::Corners;
 use crate::geometry::{Point, Vector};
 use crate::interpolator::Model;
-use crate::motion::reverse::Reversed;
+use crate::motion::lead;
+use crate::motion::reverse::reversed;
 use crate::motion::runs::ContourError;
 use crate::motion::{Act, Motion, Offset};
 use crate::part::aim_named;
@@ -38,14 +43,14 @@ use crate::place::Spot;
 use crate::plot::Plot;
 use crate::rounding::Aim;
 
-/// Convert a program or drawing to another format; work out the wire's offset, or cut it backwards
+/// Write a program or drawing in another format, with an offset or backwards
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(super) struct Options {
     /// A program, a drawing, a part file, or - for standard input
     #[arg(value_name = "IN")]
     input: String,
-    /// What to make [default: by the name after -o]
+    /// What to make [default: by the name after -o, else what IN is]
     #[arg(long, value_name = "FORMAT")]
     to: Option<To>,
     /// Where it goes [default: standard output]
@@ -53,28 +58,40 @@ pub(super) struct Options {
     output: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,
-    /// Work out the wire's path so far from the contour, mm: half the wire and the gap. Without --side: what the program's own offsets measure
+    #[command(flatten)]
+    wire: Wire,
+    #[command(flatten)]
+    plan: plan::CuttingPlan,
+    #[command(flatten)]
+    blocks: Blocks,
+    #[command(flatten)]
+    gcode: Gcode,
+}
+
+/// Where the wire goes.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Wire")]
+struct Wire {
+    /// Work out the wire's path so far from the contour, mm: half the wire and the gap. Without --side it is what the program's own offsets measure, and F of a 4B program
     #[arg(long, value_name = "MM", value_parser = distance)]
     offset: Option<f64>,
     /// The side the wire runs on, as seen in the direction of IN
     #[arg(long, value_name = "left|right", requires = "offset")]
     side: Option<Side>,
-    /// What an offset register of the control holds, such as 1=0.125; may be given again
-    #[arg(long, value_name = "N=MM", value_parser = register)]
-    register: Vec<(u32, f64)>,
+    #[command(flatten)]
+    registers: Registers,
     /// How the wire goes round outside corners: on an arc, or straight on [default: round]
     #[arg(long, value_name = "CORNERS")]
     corners: Option<CornersWord>,
     /// Cut every contour backwards, from its own start hole
     #[arg(long)]
     reverse: bool,
-    /// Where the wire stands before the first block: 3B and 4B do not say it [default: 0,0]
+    /// Where the wire stands before the first block, as 3B and 4B do not say; for a drawing a start hole, and again for more [default: 0,0; a drawing without one is begun on its contour]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
-    start: Option<Point>,
-    #[command(flatten)]
-    blocks: Blocks,
-    #[command(flatten)]
-    gcode: Gcode,
+    start: Vec<Point>,
+    /// A of a 4B program, how far its taper sets the wire's upper end off, mm
+    #[arg(long, value_name = "MM", value_parser = distance)]
+    taper: Option<f64>,
 }
 
 /// How 3B and 4B are written.
@@ -93,13 +110,16 @@ struct Blocks {
     /// Write `N 12:` before each block
     #[arg(long)]
     numbers: bool,
+    /// Put an arc of this radius into each corner of a 4B outline, mm [default: a corner is refused]
+    #[arg(long, value_name = "MM", value_parser = distance)]
+    round_corners: Option<f64>,
 }
 
 /// How G-code is written.
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "G-code")]
 struct Gcode {
-    /// The control it is for: a built-in dialect or a dialect file [default: generic]
+    /// The control OUT is for: a built-in dialect or a dialect file [default: that of IN, else generic]
     #[arg(long, value_name = "NAME|FILE")]
     to_dialect: Option<String>,
     /// Number the blocks in steps, in place of the numbers they had
@@ -115,6 +135,11 @@ enum To {
     /// Blocks of five words
     #[value(name = "3b")]
     ThreeB,
+    /// The outline, its offset left to the control
+    #[value(name = "4b")]
+    FourB,
+    /// A drawing, an entity a motion
+    Dxf,
     /// G-code of a wire-cutting control
     Gcode,
     /// A picture of lines
@@ -152,14 +177,16 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     // A program that is right under any model ends its blocks where `rotated` does.
     let model = if let Aim::One(model) = aim { model } else { Model::Rotated };
     let mut writer = Made::of(to, options, aim)?;
-    let motions = Motions::open(&options.input, &options.reading, OfPart::Elements, model)?;
+    let reading = Reading { starts: options.wire.start.clone(), ..options.reading.clone() };
+    let motions = Motions::open(&options.input, &reading, OfPart::Elements, model)?;
+    drawing::tell(&motions.places.name, motions.drawn.as_ref())?;
     let mut places = motions.places()?;
     let mut output = Output::open(options.output.as_deref())?;
     if to == To::Png && output.is_terminal() {
         return Err(Failure::new(Exit::Usage, "a PNG is nothing for a terminal").help("name a file with -o"));
     }
     let mut text = Vec::with_capacity(2 * CHUNK);
-    for motion in changed(motions, options, to)? {
+    for motion in changed(motions, options, to, &mut places)? {
         let motion = motion.map_err(|error| refused_contour(error, &mut places))?;
         writer.write(&motion, &mut text).map_err(|error| refused(error, &mut places))?;
         if text.len() >= CHUNK {
@@ -182,12 +209,21 @@ impl Options {
         let suffix = self.output.as_deref().and_then(Path::extension).and_then(|suffix| suffix.to_str());
         let by_name = match suffix.map(str::to_ascii_lowercase).as_deref() {
             Some("3b") => Some(To::ThreeB),
+            Some("4b") => Some(To::FourB),
             Some("nc" | "iso" | "ngc" | "gcode") => Some(To::Gcode),
+            Some("dxf") => Some(To::Dxf),
             Some("svg") => Some(To::Svg),
             Some("png") => Some(To::Png),
             _ => None,
         };
-        self.to.or(by_name).ok_or_else(|| {
+        let by_input = || match Kind::asked(&self.input, self.reading.from) {
+            Ok(Kind::ThreeB) => Some(To::ThreeB),
+            Ok(Kind::Gcode) => Some(To::Gcode),
+            Ok(Kind::Dxf) => Some(To::Dxf),
+            Ok(Kind::FourB) => Some(To::FourB),
+            Ok(Kind::Part) | Err(_) => None,
+        };
+        self.to.or(by_name).or_else(by_input).ok_or_else(|| {
             Failure::new(Exit::Usage, "what to make is not said")
                 .help("name a format with --to, such as --to 3b")
         })
@@ -196,11 +232,12 @@ impl Options {
     /// Words that go with other formats only.
     fn check_words(&self, to: To) -> Result<(), Failure> {
         let (blocks, gcode) = (&self.blocks, &self.gcode);
-        let is_blocks = to == To::ThreeB;
+        let is_blocks = matches!(to, To::ThreeB | To::FourB);
         for (given, belongs, word, goes) in [
-            (blocks.end.is_some(), is_blocks, "--end", "3B"),
-            (blocks.remarks.is_some(), is_blocks, "--remarks", "3B"),
-            (blocks.numbers, is_blocks, "--numbers", "3B"),
+            (blocks.end.is_some(), is_blocks, "--end", "3B and 4B"),
+            (blocks.remarks.is_some(), is_blocks, "--remarks", "3B and 4B"),
+            (blocks.numbers, is_blocks, "--numbers", "3B and 4B"),
+            (blocks.round_corners.is_some(), to == To::FourB, "--round-corners", "4B"),
             (gcode.to_dialect.is_some(), to == To::Gcode, "--to-dialect", "G-code"),
             (gcode.number_step.is_some(), to == To::Gcode, "--number-step", "G-code"),
             (gcode.suppress, to == To::Gcode, "--suppress", "G-code"),
@@ -212,7 +249,16 @@ impl Options {
         }
         Ok(())
     }
+}
 
+impl Options {
+    /// Whether the contours of a drawing are cut by a plan: where anything of it is said, or an offset.
+    fn has_plan(&self, to: To) -> bool {
+        self.plan.first_given().is_some() || (self.wire.offset.is_some() && to != To::FourB)
+    }
+}
+
+impl Wire {
     fn corners(&self) -> Corners {
         match self.corners {
             None | Some(CornersWord::Round) => Corners::Round,
@@ -221,47 +267,131 @@ impl Options {
     }
 }
 
+impl Blocks {
+    fn form(&self, aim: Aim) -> three_b::Form {
+        let (standard, end) = (three_b::Form::default(), self.end.as_deref());
+        three_b::Form {
+            aim,
+            end: STOP_WORDS.iter().find(|(word, _)| end == Some(word)).map_or(standard.end, |s| s.1),
+            remarks: match self.remarks {
+                None => three_b::Remarks::LeftOut,
+                Some(Remarks::Brackets) => three_b::Remarks::Brackets,
+                Some(Remarks::Semicolons) => three_b::Remarks::Semicolons,
+            },
+            numbers: if self.numbers { three_b::Numbers::All } else { three_b::Numbers::LeftOut },
+            ..standard
+        }
+    }
+}
+
 type Stream = Box<dyn Iterator<Item = Result<Motion, ContourError>>>;
 
 /// What is to be written, motion by motion.
-fn changed(motions: Motions, options: &Options, to: To) -> Result<Stream, Failure> {
-    let kind = motions.kind;
-    let mut stream: Stream = Box::new(motions.map(|motion| motion.map_err(ContourError::from)));
-    if let Some(start) = options.start {
-        if !matches!(kind, Kind::ThreeB | Kind::FourB | Kind::Part) {
-            let message =
-                format!("--start goes with 3B, 4B and parts; {} says where it begins", kind.title());
-            return Err(Failure::new(Exit::Usage, message).help("leave it out"));
+fn changed(motions: Motions, options: &Options, to: To, places: &mut Places) -> Result<Stream, Failure> {
+    let (kind, wire) = (motions.kind, &options.wire);
+    let side = wire.side.map(|side| match side {
+        Side::Left => crate::motion::Side::Left,
+        Side::Right => crate::motion::Side::Right,
+    });
+    let mut stream = match &motions.drawn {
+        Some(drawing) if options.has_plan(to) => {
+            let needs = plan::Wire {
+                offset: wire.offset,
+                side,
+                corners: wire.corners(),
+                starts: &wire.start,
+                stops: to == To::Gcode,
+            };
+            let cutting = options.plan.cut(drawing, &needs, places)?;
+            Box::new(cutting.map(|motion| motion.map_err(cannot_be_cut))) as Stream
         }
-        let by = start - Point::origin();
-        stream = Box::new(stream.map(move |motion| motion.map(|motion| moved(motion, by))));
-    }
-    // 3B has no offset; a picture shows the wire's path. G-code keeps an offset for the control, unless one is put on.
-    let is_wire = options.side.is_some() || matches!(to, To::ThreeB);
-    if let (Some(side), Some(distance)) = (options.side, options.offset) {
-        let side = match side {
-            Side::Left => crate::motion::Side::Left,
-            Side::Right => crate::motion::Side::Right,
-        };
-        stream = Box::new(PutOn::new(stream, side, distance));
-    } else if let Some(distance) = options.offset {
-        stream = Box::new(stream.map(move |motion| motion.map(|motion| measured(motion, distance))));
-    }
-    if is_wire || options.offset.is_some() {
-        let registers: BTreeMap<u32, f64> = options.register.iter().copied().collect();
-        let mut wire = Compensated::new(stream, registers, options.corners());
-        stream = Box::new(std::iter::from_fn(move || {
-            let motion = wire.next();
-            for warning in wire.take_warnings() {
-                tell(&warning);
+        Some(_) => {
+            let drawn = motions.map(|motion| motion.map_err(ContourError::from));
+            let hole = wire.start.first().copied();
+            let stream: Stream = match hole {
+                Some(hole) => Box::new(lead::from_hole(drawn, hole)),
+                None => Box::new(drawn),
+            };
+            beside(stream, options, side, to)
+        }
+        None => {
+            if let Some(word) = options.plan.first_given() {
+                let message =
+                    format!("{word} goes with a drawing, and {} is {}", options.input, kind.title());
+                return Err(Failure::new(Exit::Usage, message).help(
+                    "a program is led in as it is; make a drawing of its outline, or put an offset on it with --offset and --side",
+                ));
             }
-            Some(motion?.map_err(ContourError::from))
-        }));
-    }
-    if options.reverse {
-        stream = Box::new(Reversed::new(stream));
+            let mut stream: Stream = Box::new(motions.map(|motion| motion.map_err(ContourError::from)));
+            if let Some(start) = wire.start.first() {
+                if kind == Kind::Gcode {
+                    let message = "--start goes with 3B, 4B, parts and drawings; G-code says where it begins";
+                    return Err(Failure::new(Exit::Usage, message).help("leave it out"));
+                }
+                let by = start - Point::origin();
+                stream = Box::new(stream.map(move |motion| motion.map(|motion| moved(motion, by))));
+            }
+            if kind == Kind::FourB {
+                keyed_in(stream, options, to)?
+            } else {
+                beside(stream, options, side, to)
+            }
+        }
+    };
+    if options.wire.reverse {
+        stream = Box::new(reversed(stream));
     }
     Ok(stream)
+}
+
+/// The wire's path of a 4B program, once an offset is keyed in.
+fn keyed_in(stream: Stream, options: &Options, to: To) -> Result<Stream, Failure> {
+    let wire = &options.wire;
+    if wire.side.is_some() {
+        return Err(Failure::new(Exit::Usage, "a 4B program says itself on which side the wire runs")
+            .help("leave --side out; --offset is F, positive outside the outline"));
+    }
+    if wire.offset.is_none() && wire.taper.is_none() {
+        return Ok(stream);
+    }
+    if to == To::FourB {
+        return Err(Failure::new(Exit::Usage, "4B leaves the offset to the control")
+            .help("leave --offset and --taper out, or name another format with --to"));
+    }
+    let keyed = Keyed { offset: wire.offset.unwrap_or(0.0), taper: wire.taper };
+    Ok(Box::new(four_b::offset::beside(stream, keyed)))
+}
+
+/// The wire's path of any other program: beside its contours, or as its own offsets say.
+fn beside(mut stream: Stream, options: &Options, side: Option<crate::motion::Side>, to: To) -> Stream {
+    let wire = &options.wire;
+    if let (Some(side), Some(distance)) = (side, wire.offset) {
+        stream = Box::new(PutOn::new(stream, side, distance));
+    } else if let Some(distance) = wire.offset {
+        stream = Box::new(stream.map(move |motion| motion.map(|motion| measured(motion, distance))));
+    }
+    // 3B has no offset; 4B leaves it to the control, and so does G-code unless it is said here.
+    if to == To::FourB || (to != To::ThreeB && wire.offset.is_none()) {
+        return stream;
+    }
+    let mut wire = Compensated::new(stream, wire.registers.held(), wire.corners());
+    Box::new(std::iter::from_fn(move || {
+        let motion = wire.next();
+        for warning in wire.take_warnings() {
+            say!("warning: {warning}");
+        }
+        Some(motion?.map_err(ContourError::from))
+    }))
+}
+
+/// A plan was tried out before its first motion; what is refused all the same is told like anything else.
+fn cannot_be_cut(refusal: Refusal) -> ContourError {
+    ContourError::Contour {
+        message: refusal.fault.to_string(),
+        block: 0,
+        spot: refusal.spot,
+        help: refusal.help().into(),
+    }
 }
 
 /// A motion in another place.
@@ -281,20 +411,12 @@ fn measured(mut motion: Motion, mm: f64) -> Motion {
     motion
 }
 
-fn tell(warning: &Warning) {
-    let Warning { block, unreached, .. } = warning;
-    say!(
-        "warning: block {block}: the wire does not reach the contour at X{:.3} Y{:.3}; the largest offset that does is {:.3} mm",
-        unreached.at.x,
-        unreached.at.y,
-        unreached.largest
-    );
-}
-
 /// What is being made.
 enum Made {
     ThreeB(Box<three_b::Writer>),
+    FourB(Box<four_b::write::Writer>),
     Gcode { writer: Box<gcode::Writer>, motions: u64 },
+    Dxf { writer: DxfWriter, motions: u64 },
     Picture { plot: Box<Plot>, to: To, moves: u64 },
 }
 
@@ -307,24 +429,16 @@ enum Unfinished {
 impl Made {
     fn of(to: To, options: &Options, aim: Aim) -> Result<Self, Failure> {
         Ok(match to {
-            To::ThreeB => {
-                let (blocks, standard) = (&options.blocks, three_b::Form::default());
-                let end = blocks.end.as_deref();
-                Self::ThreeB(Box::new(three_b::Writer::new(three_b::Form {
-                    aim,
-                    end: STOP_WORDS.iter().find(|(word, _)| end == Some(word)).map_or(standard.end, |s| s.1),
-                    remarks: match blocks.remarks {
-                        None => three_b::Remarks::LeftOut,
-                        Some(Remarks::Brackets) => three_b::Remarks::Brackets,
-                        Some(Remarks::Semicolons) => three_b::Remarks::Semicolons,
-                    },
-                    numbers: blocks.numbers,
-                    ..standard
-                })))
-            }
+            To::ThreeB => Self::ThreeB(Box::new(three_b::Writer::new(options.blocks.form(aim)))),
+            To::FourB => Self::FourB(Box::new(four_b::write::Writer::new(four_b::write::Form {
+                plain: options.blocks.form(aim),
+                order: four_b::Order::default(),
+                corners: options.blocks.round_corners,
+            }))),
             To::Gcode => {
                 let Gcode { to_dialect, number_step, suppress } = &options.gcode;
-                let dialect = dialects::load(to_dialect.as_deref(), "written")?;
+                let dialect =
+                    dialects::load(to_dialect.as_deref().or(options.reading.dialect.as_deref()), "written")?;
                 let layout = gcode::Layout {
                     number_step: *number_step,
                     suppress: *suppress,
@@ -332,11 +446,12 @@ impl Made {
                 };
                 Self::Gcode { writer: Box::new(gcode::Writer::with_layout(dialect, layout)), motions: 0 }
             }
+            To::Dxf => Self::Dxf { writer: DxfWriter::new(), motions: 0 },
             To::Svg | To::Png => {
                 let name = Path::new(&options.input).file_name();
                 let plot = Plot::new(crate::plot::Options {
                     title: name.map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
-                    wire: options.offset.map(|offset| 2.0 * offset.abs()).filter(|wire| *wire > 0.0),
+                    wire: options.wire.offset.map(|offset| 2.0 * offset.abs()).filter(|wire| *wire > 0.0),
                     numbers: None,
                     simulated: None,
                 });
@@ -349,7 +464,12 @@ impl Made {
         let is_move = u64::from(matches!(motion.act, Act::Move { .. }));
         match self {
             Self::ThreeB(writer) => writer.write(motion, text),
+            Self::FourB(writer) => writer.write(motion, text),
             Self::Gcode { writer, motions } => {
+                *motions += is_move;
+                writer.write(motion, text)
+            }
+            Self::Dxf { writer, motions } => {
                 *motions += is_move;
                 writer.write(motion, text)
             }
@@ -369,14 +489,19 @@ impl Made {
         match self {
             Self::ThreeB(mut writer) => {
                 writer.finish(text).map_err(Unfinished::Write)?;
-                let mut account = counted(writer.blocks(), "block");
-                if let Some(hole) = writer.start_hole() {
-                    account.push_str(&format!(
-                        "\nthe program begins with the wire in its start hole, X{:.3} Y{:.3}",
-                        hole.x, hole.y
-                    ));
+                Ok(account(writer.blocks(), writer.start_hole(), writer.lost()))
+            }
+            Self::FourB(mut writer) => {
+                writer.finish(text).map_err(Unfinished::Write)?;
+                let mut account = account(writer.blocks(), writer.start_hole(), writer.lost());
+                if let Some(ToKey { outside, distance }) = writer.keyed() {
+                    let sign = if outside { '+' } else { '-' };
+                    let distance = distance.map_or_else(
+                        || "as the register of the source says".to_owned(),
+                        |mm| format!("{mm:.4} mm"),
+                    );
+                    account.push_str(&format!("\nkey into the control: F = {sign} {distance}"));
                 }
-                account.push_str(&left_out(writer.lost(), "left out"));
                 Ok(account)
             }
             Self::Gcode { mut writer, motions } => {
@@ -384,6 +509,10 @@ impl Made {
                 let mut account = counted(motions, "motion");
                 account.push_str(&left_out(writer.lost(), "kept as a remark"));
                 Ok(account)
+            }
+            Self::Dxf { mut writer, motions } => {
+                writer.finish(text).map_err(Unfinished::Write)?;
+                Ok(counted(motions, "motion"))
             }
             Self::Picture { plot, to, moves } => {
                 let plotted = plot.finish();
@@ -403,6 +532,17 @@ impl Made {
             }
         }
     }
+}
+
+/// What was written, and what the operator has to know about it.
+fn account(blocks: u64, hole: Option<Point>, lost: &Losses) -> String {
+    let mut text = counted(blocks, "block");
+    if let Some(hole) = hole {
+        let (x, y) = (hole.x, hole.y);
+        text.push_str(&format!("\nthe program begins with the wire in its start hole, X{x:.3} Y{y:.3}"));
+    }
+    text.push_str(&left_out(lost, "left out"));
+    text
 }
 
 fn counted(count: u64, what: &str) -> String {
@@ -447,12 +587,6 @@ fn distance(text: &str) -> Result<f64, String> {
         Ok(value) if value.abs() <= 100.0 => Ok(value),
         _ => Err("an offset is a length in mm, up to 100".to_owned()),
     }
-}
-
-fn register(text: &str) -> Result<(u32, f64), String> {
-    let split =
-        text.split_once('=').and_then(|(n, mm)| Some((n.trim().parse().ok()?, distance(mm.trim()).ok()?)));
-    split.ok_or_else(|| "a register is a number and what it holds in mm, such as 1=0.125".to_owned())
 }
 
 fn point(text: &str) -> Result<Point, String> {

@@ -11,13 +11,16 @@ use std::path::Path;
 use clap::Args;
 
 use super::dialects;
+use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::source;
+use crate::drawing::dxf::Drawing;
 use crate::formats::ReadError;
 use crate::formats::gcode::{self, Dialect};
 use crate::formats::lines::Line;
 use crate::formats::three_b::{self, Block};
+use crate::geometry::Point;
 use crate::interpolator::Model;
 use crate::motion::{Act, Motion};
 use crate::part::{Part, Prepared};
@@ -36,6 +39,14 @@ pub(super) struct Reading {
     /// The dialect of the machine, where it is known and no other is named.
     #[arg(skip)]
     pub(super) of_machine: Option<String>,
+    /// Whether arcs whose radii disagree are read as they are.
+    #[arg(skip)]
+    pub(super) keeps_wrong_arcs: bool,
+    #[command(flatten)]
+    pub(super) drawing: drawing::OfDrawing,
+    /// Where the wire enters a drawing.
+    #[arg(skip)]
+    pub(super) starts: Vec<Point>,
 }
 
 impl Reading {
@@ -60,6 +71,8 @@ pub(super) struct Motions {
     pub(super) places: Places,
     source: Source,
     part: Option<Part>,
+    /// The drawing the motions are of.
+    pub(super) drawn: Option<Drawing>,
 }
 
 /// Where to look up what stands at a spot.
@@ -116,7 +129,12 @@ impl Motions {
             let message = format!("--dialect goes with G-code, and {word} is {}", kind.title());
             return Err(Failure::new(Exit::Usage, message).help("leave it out, or say --from gcode"));
         }
-        let (mut part, mut file) = (None, None);
+        if reading.drawing.is_given() && kind != Kind::Dxf {
+            let message = format!("{word} is {}, and not a drawing", kind.title());
+            return Err(Failure::new(Exit::Usage, message)
+                .help("leave out what goes with drawings only, or say --from dxf"));
+        }
+        let (mut part, mut file, mut drawn) = (None, None, None);
         let blocks = |motions| Source::Blocks { motions: Box::new(motions), base: Spot::default() };
         let source = match kind {
             Kind::Part => {
@@ -132,8 +150,10 @@ impl Motions {
                 }
             }
             Kind::Dxf => {
-                let message = format!("{word} is a drawing, and drawings are not read yet");
-                return Err(Failure::new(Exit::Usage, message));
+                let drawing = reading.drawing.read(word, &reading.starts)?;
+                let motions: Vec<Motion> = drawing.motions().collect();
+                drawn = Some(drawing);
+                Source::Made(Box::new(motions.into_iter()))
             }
             Kind::ThreeB | Kind::FourB | Kind::Gcode => {
                 let failed = |error: io::Error| source::unreadable(word, &error);
@@ -145,7 +165,8 @@ impl Motions {
                 match kind {
                     Kind::FourB => blocks(three_b::motions::Motions::of_four_b(Box::new(text), model)),
                     Kind::Gcode => {
-                        let dialect = dialects::load(reading.dialect(), "read")?;
+                        let mut dialect = dialects::load(reading.dialect(), "read")?;
+                        dialect.keeps_wrong_arcs = reading.keeps_wrong_arcs;
                         let motions = gcode::Motions::of_file(text, dialect.clone())
                             .map_err(|error| Failure::read(word, error))?;
                         Source::Gcode {
@@ -159,7 +180,7 @@ impl Motions {
             }
         };
         let name = if word == "-" { "standard input".to_owned() } else { word.to_owned() };
-        Ok(Self { kind, places: Places { name, kind, file }, source, part })
+        Ok(Self { kind, places: Places { name, kind, file }, source, part, drawn })
     }
 
     /// The 3B block the last motion came from.

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
@@ -35,8 +36,6 @@ pub(super) struct Options {
     #[arg(short, long, value_name = "OUT.svg|OUT.png")]
     output: PathBuf,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
     registers: Registers,
     /// The wire's diameter; 0 draws no wire [default: 0.18]
     #[arg(long, value_name = "MM", value_parser = diameter)]
@@ -56,6 +55,8 @@ pub(super) struct Options {
     /// Print what was drawn as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 /// What pictures can be written.
@@ -81,6 +82,10 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let model = Model::ALL.into_iter().find(|model| Some(model.name()) == named).unwrap_or(Model::Rotated);
     let simulated = (!options.no_simulation).then_some(model);
     let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, model)?;
+    if let Err(fault) = drawing::tell(&motions.places.name, motions.drawn.as_ref()) {
+        // A drawing that cannot be cut as it is can be looked at.
+        say!("{}", fault.render().trim_end());
+    }
     let wire = options.wire.or_else(|| kerf(&motions)).unwrap_or_else(|| {
         say!("the wire's diameter is not given: {WIRE_MM} mm is drawn (--wire MM)");
         WIRE_MM

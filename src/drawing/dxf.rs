@@ -104,7 +104,7 @@ impl Drawing {
     }
 
     /// The motions that cut the drawing: a remark with its layer before each contour, positioning to its start where the
-    /// wire is not there yet, the contour, and the end of the program.
+    /// wire is not there yet, with a pause before and after it for the wire, the contour, and the end of the program.
     pub fn motions(&self) -> impl Iterator<Item = Motion> {
         motions::Motions::of(&self.contours)
     }

@@ -73,7 +73,13 @@ pub(super) fn follow(
                     chains.push(Chain { elements, layer, line, travel });
                 }
             }
-            _ => chains.push(Chain { elements, layer, line, travel }),
+            _ => {
+                // The first of all begins at the origin to the bit.
+                if fresh && begin != at && (begin - at).norm() <= ROUNDED {
+                    elements[0] = moved_end(elements[0].reversed(), at).reversed();
+                }
+                chains.push(Chain { elements, layer, line, travel });
+            }
         }
         (at, fresh) = (end, false);
     }

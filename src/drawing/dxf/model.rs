@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use crate::drawing::contours::Piece;
 use crate::drawing::finding::{Finding, Severity};
-use crate::geometry::Path;
 use crate::geometry::biarc::Fit;
+use crate::geometry::{Element, Path};
 use crate::motion::Travel;
 
 use super::entity::{Figure, Insert, Uncut};
@@ -27,10 +27,25 @@ pub(super) struct Model<'a> {
     chosen: Option<Vec<bool>>,
     shown: usize,
     full: bool,
+    /// Shown, and not traced yet.
+    jobs: Vec<Job<'a>>,
     pub(super) pieces: Vec<Piece>,
     pub(super) report: Vec<Finding>,
     left_out: BTreeMap<(LeftOut, u32), (u64, u64)>,
 }
+
+/// An entity to be made into elements.
+struct Job<'a> {
+    entity: &'a Entity,
+    layer: u32,
+    placement: Placement,
+}
+
+/// Entities traced at a time: a bound of memory.
+const JOBS_MAX: usize = 1 << 17;
+/// The most threads, and the fewest entities for one.
+const THREADS_MAX: usize = 8;
+const PART_MIN: usize = 256;
 
 /// Why something was left out, for counting.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
@@ -51,19 +66,21 @@ impl<'a> Model<'a> {
             chosen,
             shown: 0,
             full: false,
+            jobs: Vec::new(),
             pieces: Vec::new(),
             report: Vec::new(),
             left_out: BTreeMap::new(),
         };
         let all = &records.entities[records.model.clone()];
         model.entities(all, &Placement::scaled(scale), None, &mut Vec::new());
+        model.trace();
         model.tell_left_out();
         model
     }
 
     fn entities(
         &mut self,
-        entities: &[Entity],
+        entities: &'a [Entity],
         placement: &Placement,
         inherited: Option<u32>,
         inside: &mut Vec<u32>,
@@ -113,12 +130,39 @@ impl<'a> Model<'a> {
                 self.count(LeftOut::UpperEnd, layer, entity.line);
                 continue;
             }
-            self.piece(entity, layer, placement);
+            self.jobs.push(Job { entity, layer, placement: *placement });
+            if self.jobs.len() >= JOBS_MAX {
+                self.trace();
+            }
         }
     }
 
-    fn piece(&mut self, entity: &Entity, layer: u32, placement: &Placement) {
-        let elements = match trace(&entity.figure, placement, &self.fit) {
+    /// Makes pieces of what has been shown, in its order, on as many processors as there are.
+    fn trace(&mut self) {
+        let jobs = std::mem::take(&mut self.jobs);
+        let fit = self.fit;
+        let work = |part: &[Job<'_>]| -> Vec<Result<Vec<Element>, TraceError>> {
+            part.iter().map(|job| trace(&job.entity.figure, &job.placement, &fit)).collect()
+        };
+        let processors = std::thread::available_parallelism().map_or(1, |count| count.get().min(THREADS_MAX));
+        let (here, others) = jobs.split_at(jobs.len().div_ceil(processors).max(PART_MIN).min(jobs.len()));
+        let parts = others.chunks(here.len().max(1));
+        let traced = std::thread::scope(|scope| {
+            let threads: Vec<_> = parts.map(|part| scope.spawn(|| work(part))).collect();
+            let mut traced = vec![work(here)];
+            traced.extend(threads.into_iter().map(|thread| match thread.join() {
+                Ok(part) => part,
+                Err(panic) => std::panic::resume_unwind(panic),
+            }));
+            traced
+        });
+        for (job, traced) in jobs.iter().zip(traced.into_iter().flatten()) {
+            self.piece(job.entity, job.layer, traced);
+        }
+    }
+
+    fn piece(&mut self, entity: &Entity, layer: u32, traced: Result<Vec<Element>, TraceError>) {
+        let elements = match traced {
             Ok(elements) => elements,
             Err(error) => {
                 let kind = name_of(&entity.figure);
@@ -230,7 +274,8 @@ impl<'a> Model<'a> {
                     (severity, "not-cut", format!("{count} {kind} on layer {name} {are} not cut"))
                 }
                 LeftOut::Uncut(Uncut::Mesh) => {
-                    let message = format!("{count} POLYLINE meshes on layer {name} are not cut");
+                    let meshes = if count == 1 { "mesh" } else { "meshes" };
+                    let message = format!("{count} POLYLINE {meshes} on layer {name} {are} not cut");
                     (Severity::Warning, "not-cut", message)
                 }
                 LeftOut::Uncut(Uncut::Invisible) => {

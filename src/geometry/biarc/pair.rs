@@ -58,14 +58,16 @@ impl Pieces {
 
     /// About the greatest distance of the curve from the elements, mm, from a few places.
     pub(super) fn glance(&self, curve: &impl Curve, stretch: &Stretch, [from, to]: [f64; 2]) -> f64 {
-        let probes = (Probe::of(&self.first), self.second.as_ref().map(Probe::of));
+        let probes = self.probes();
         let measure = |eighths: f64| {
-            let p = curve.point(stretch.parameter(from + (to - from) * eighths / 8.0));
-            let near = probes.0.distance(p);
-            probes.1.as_ref().map_or(near, |second| near.min(second.distance(p)))
+            probes.distance(curve.point(stretch.parameter(from + (to - from) * eighths / 8.0)))
         };
         // The tops of an arc's and of a biarc's deviation lie a twentieth above these places.
         1.06 * [1.0, 3.0, 5.0, 7.0].map(measure).into_iter().fold(0.0, f64::max)
+    }
+
+    fn probes(&self) -> Probes {
+        Probes { first: Probe::of(&self.first), second: self.second.as_ref().map(Probe::of) }
     }
 
     /// The greatest distance found of the curve's points from the elements, mm; when it is beyond the tolerance, one
@@ -77,12 +79,9 @@ impl Pieces {
         [from, to]: [f64; 2],
         tolerance: f64,
     ) -> f64 {
-        let probes = (Probe::of(&self.first), self.second.as_ref().map(Probe::of));
-        let measure = |share: f64| {
-            let p = curve.point(stretch.parameter(from + (to - from) * share));
-            let near = probes.0.distance(p);
-            probes.1.as_ref().map_or(near, |second| near.min(second.distance(p)))
-        };
+        let probes = self.probes();
+        let measure =
+            |share: f64| probes.distance(curve.point(stretch.parameter(from + (to - from) * share)));
         let mut most = 0.0_f64;
         // A few places first: most tries that fail, fail there.
         for n in [1, 3, 5, 7] {
@@ -241,30 +240,49 @@ impl Probe {
         Self { start, end, kind }
     }
 
-    fn distance(&self, p: Point) -> f64 {
-        let ends = || (p - self.start).norm_squared().min((p - self.end).norm_squared()).sqrt();
+    /// The distance of a point beside the element; none for one before its start or behind its end.
+    fn beside(&self, p: Point) -> Option<f64> {
         match self.kind {
             Kind::Line { way, length2 } => {
                 let seen = p - self.start;
                 let along = seen.dot(&way);
-                if length2 > 0.0 && 0.0 <= along && along <= length2 {
-                    cross(way, seen).abs() / length2.sqrt()
-                } else {
-                    ends()
-                }
+                let beside = length2 > 0.0 && 0.0 <= along && along <= length2;
+                beside.then(|| cross(way, seen).abs() / length2.sqrt())
             }
             Kind::Arc { centre, radius, sign } => {
                 let seen = p - centre;
                 let after = cross(self.start - centre, seen) * sign >= 0.0;
                 let before = cross(seen, self.end - centre) * sign >= 0.0;
-                if after && before {
+                (after && before).then(|| {
                     // Free of cancellation where the radius is large.
                     let off = p - self.start;
                     let square = off.norm_squared() + 2.0 * off.dot(&(self.start - centre));
                     square.abs() / (seen.norm() + radius)
-                } else {
-                    ends()
-                }
+                })
+            }
+        }
+    }
+
+    fn from_ends(&self, p: Point) -> f64 {
+        (p - self.start).norm_squared().min((p - self.end).norm_squared()).sqrt()
+    }
+}
+
+/// The probes of both elements.
+struct Probes {
+    first: Probe,
+    second: Option<Probe>,
+}
+
+impl Probes {
+    fn distance(&self, p: Point) -> f64 {
+        let second = self.second.as_ref();
+        match (self.first.beside(p), second.and_then(|second| second.beside(p))) {
+            (Some(one), Some(other)) => one.min(other),
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => {
+                let first = self.first.from_ends(p);
+                second.map_or(first, |second| first.min(second.from_ends(p)))
             }
         }
     }
@@ -279,6 +297,6 @@ const SMOOTH: f64 = 5e-10;
 /// Centres and radii this close are one circle, mm.
 const SAME_CIRCLE: f64 = 1e-8;
 /// Places in which a piece is measured, at least.
-const PLACES: usize = 28;
+const PLACES: usize = 18;
 /// Tries for the crossing; it need not be met closely.
 const CROSSING_TRIES: usize = 4;

@@ -53,7 +53,7 @@ impl Walk {
             let near = (high - low) * NEAR;
             if n > 0 {
                 let (before, after) = (look.heading(low, -near), look.heading(low, near));
-                if turn(before, after).abs() > CORNER {
+                if angle(before, after) > CORNER {
                     look.end(&mut stretches, [first, before]);
                     look.begin(low)?;
                     first = after;
@@ -160,15 +160,15 @@ impl<C: Curve> Look<'_, C> {
         stretches: &mut Vec<Stretch>,
         first: &mut Vector,
     ) -> Result<(), FitError> {
-        let angle = turn(left.1, right.1).abs();
+        let turned = angle(left.1, right.1);
         let middle = 0.5 * (left.0 + right.0);
         let narrow = right.0 - left.0 <= self.width_min || middle <= left.0 || right.0 <= middle;
         let half = (middle, self.heading(middle, (right.0 - left.0) * NEAR));
         // A step that turns at one end only would be measured too coarsely there.
-        let halves = [turn(left.1, half.1).abs(), turn(half.1, right.1).abs()];
+        let halves = [angle(left.1, half.1), angle(half.1, right.1)];
         let uneven = halves[0].max(halves[1]) > EVEN_TURN + UNEVEN * halves[0].min(halves[1]);
-        if !(angle > STEP_TURN || uneven) || narrow || self.t.len() > STEPS_MAX {
-            if angle > STEP_TURN && narrow {
+        if !(turned > STEP_TURN || uneven) || narrow || self.t.len() > STEPS_MAX {
+            if turned > STEP_TURN && narrow {
                 // The jump lies between the two values: what is before it ends, what is after it begins.
                 self.note(right.0, 0.0)?;
                 self.end(stretches, [*first, left.1]);
@@ -176,7 +176,7 @@ impl<C: Curve> Look<'_, C> {
                 *first = right.1;
                 return Ok(());
             }
-            return self.note(right.0, angle);
+            return self.note(right.0, turned);
         }
         self.between(left, half, stretches, first)?;
         self.between(half, right, stretches, first)
@@ -203,6 +203,16 @@ impl<C: Curve> Look<'_, C> {
             .or_else(|| unit(beside()))
             .or_else(|| unit(far()).map(|way| if near < 0.0 { -way } else { way }))
             .unwrap_or_else(Vector::zeros)
+    }
+}
+
+/// The angle between two directions of length 1, radians; a small one by its sine, to a few ten-thousandths of it.
+fn angle(a: Vector, b: Vector) -> f64 {
+    let sine = (a.x * b.y - a.y * b.x).abs();
+    if a.dot(&b) > 0.9 {
+        sine * (1.0 + sine * sine * (1.0 / 6.0 + sine * sine * 0.075))
+    } else {
+        turn(a, b).abs()
     }
 }
 

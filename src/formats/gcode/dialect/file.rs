@@ -48,6 +48,7 @@ impl Dialect {
             return_ends: switch(&program, "m99_ends")?,
             semicolon: switch(&program, "semicolon")?,
             brackets: switch(&program, "brackets")?,
+            keeps_wrong_arcs: false,
             written: Written {
                 micrometres: word(&written, "numbers", &[("point", false), ("um", true)])?,
                 padded: needed(&written, "padded", written.whole("padded", 0..=9)?)? as usize,
