@@ -300,7 +300,8 @@ fn field() -> impl Strategy<Value = (Vec<Element>, usize)> {
             .enumerate()
             .flat_map(|(n, &(size, round, turned))| {
                 let (x, y) = ((n % 6) as f64 * 10.0, (n / 6) as f64 * 10.0);
-                let shape = if round { vec![circle(x + 4.5, y + 4.5, size / 2.0)] } else { square(x, y, size) };
+                let shape =
+                    if round { vec![circle(x + 4.5, y + 4.5, size / 2.0)] } else { square(x, y, size) };
                 shape.into_iter().map(move |e| if turned { e.reversed() } else { e })
             })
             .collect();
