@@ -77,7 +77,7 @@ pub enum FitError {
 }
 
 /// The most elements a curve may take: a guard against a tolerance far too small for the curve.
-pub const ELEMENTS_MAX: usize = 1_000_000;
+pub const ELEMENTS_MAX: usize = 100_000;
 
 /// A curve no point of which is farther than this from its start is none, mm.
 const POINT_WITHIN: f64 = 1e-6;

@@ -121,7 +121,8 @@ class Any:
         size = self.number(0.2, 3) * self.random.choice([1, -1])
         even = self.random.random() < 0.5
         insert = into.add_blockref(
-            self.random.choice(["ONE", "TWO"]),
+            # ezdxf has no insert that shears, which one turned in one scaled unevenly does.
+            self.random.choice(["ONE", "TWO"]) if even else "ONE",
             self.point(),
             dxfattribs={
                 "xscale": size,

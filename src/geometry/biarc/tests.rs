@@ -235,7 +235,7 @@ fn a_curve_of_any_size_is_followed_or_refused_in_little_time() {
             for centre in [0.0, 1e8, 1e150] {
                 let curve = Ellipse::whole(Point::new(centre, 0.0), Vector::new(a, 0.0), Vector::new(0.0, b));
                 for elements in [Elements::Lines, Elements::Biarcs] {
-                    let fit = Fit { tolerance: 0.001, elements, radius_max: 99_999.0 };
+                    let fit = Fit { tolerance: 0.1, elements, radius_max: 99_999.0 };
                     match super::fit(&curve, &fit) {
                         Ok(made) => assert!(made.len() < 100_000, "{a} {b} {centre} {}", made.len()),
                         Err(
