@@ -51,9 +51,10 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
                         | Fault::CutsTab { .. }
                         | Fault::TabTooShort { .. }
                         | Fault::TabLost { .. }
+                        | Fault::EntryLost { .. }
                         | Fault::TabsTooLong { .. }
-                        | Fault::HoleInPart { .. }
                 );
+                println!("REF {}", format!("{:?}", refusal.fault).split_whitespace().next().unwrap());
                 prop_assert!(expected, "{refusal}");
                 Ok(())
             }
@@ -61,6 +62,7 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
     });
     outcome.unwrap();
     let counts = [judged.get(), tabbed.get(), skimmed.get(), arcs.get()];
+    println!("COUNTS {counts:?}");
     assert!(counts[0] > 200 && counts[1] > 80 && counts[2] > 100 && counts[3] > 40, "{counts:?}");
 }
 
@@ -326,7 +328,9 @@ fn once(
                 return Err(format!("{point} in a tab is cut before the stop"));
             }
             if !tab && held && runs[0].stops > 0 {
-                return Err(format!("{point} outside the tabs is cut only after a stop"));
+                return Err(format!(
+                    "{point} outside the tabs {tabs:?} at {along} of {whole} is cut only after a stop"
+                ));
             }
         }
     }
