@@ -83,6 +83,30 @@ fn arcs_keep_the_very_centres_of_the_contour_and_of_its_corners() {
 }
 
 #[test]
+fn a_sharp_corner_never_comes_nearer_and_its_straights_are_tangents() {
+    let mut sharper = 0;
+    for seed in 0..CONTOURS {
+        let (kind, path) = contours::any(seed);
+        let by = Dice::new(seed + 5000).between(0.03, 1.0);
+        for left in [by, -by] {
+            let Ok(found) = offset(&path, left, Corners::Sharp { limit: 2.0 }) else { continue };
+            for outline in &found.outlines {
+                for (way, origin) in outline.path.elements().iter().zip(&outline.origins) {
+                    for (point, _) in samples(way, 40) {
+                        let off = distance(&path, point) - by;
+                        assert!(off > -UM && off < by + UM, "{kind} {seed} {left}: {point} is off by {off}");
+                        let own = path.elements()[origin.element()].distance(point);
+                        assert!(own > by - UM && own < 2.0 * by + UM, "{kind} {seed} {left}: {own}");
+                        sharper += usize::from(off > UM);
+                    }
+                }
+            }
+        }
+    }
+    assert!(sharper > 500, "{sharper}");
+}
+
+#[test]
 fn ends_that_miss_their_circle_by_a_rounding_do_no_more_harm_than_that() {
     let rounded = |p: Point| Point::new((p.x * 1e3).round() / 1e3, (p.y * 1e3).round() / 1e3);
     let mut judged = 0;
