@@ -98,7 +98,7 @@ impl fmt::Display for Warning {
             Fate::PassedBy => ("does not reach", "does"),
             Fate::CutInto => ("cuts into", "does not"),
         };
-        write!(f, "the wire {what} the contour at X{:.3} Y{:.3}; ", at.x, at.y)?;
+        write!(f, "block {}: the wire {what} the contour at X{:.3} Y{:.3}; ", self.block, at.x, at.y)?;
         write!(f, "the largest offset that {does} is {largest:.3} mm")
     }
 }
