@@ -85,11 +85,7 @@ fn shared(a: &Element, b: &Element) -> [Option<Point>; 2] {
             let (radius2, other2) = ((on - centre).norm_squared(), (other - second).norm_squared());
             let along = (distance * distance + radius2 - other2) / (2.0 * distance);
             let heading = way / distance;
-            either_side(
-                centre + heading * along,
-                Vector::new(-heading.y, heading.x),
-                radius2 - along * along,
-            )
+            either_side(centre + heading * along, Vector::new(-heading.y, heading.x), radius2 - along * along)
         }
     }
 }

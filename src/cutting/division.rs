@@ -90,13 +90,14 @@ mod tests {
 
     #[test]
     fn given_tabs_may_stand_anywhere_even_at_the_beginning() {
-        let at = |tabs: &[(f64, f64)]| {
-            Tabs::At(tabs.iter().map(|&(from, length)| Tab { from, length }).collect())
-        };
+        let at =
+            |tabs: &[(f64, f64)]| Tabs::At(tabs.iter().map(|&(from, length)| Tab { from, length }).collect());
         let division = Division::of(40.0, &at(&[(0.0, 2.0), (10.0, 1.0)])).unwrap();
         assert_eq!(division.marks, [0.0, 2.0, 10.0, 11.0, 40.0]);
         assert_eq!(division.pieces, [Bridge, Stretch, Bridge, Stretch]);
-        for wrong in [&[(5.0, 2.0), (6.0, 1.0)][..], &[(39.0, 2.0)], &[(0.0, 1.0), (39.0, 1.0)], &[(-1.0, 2.0)]] {
+        for wrong in
+            [&[(5.0, 2.0), (6.0, 1.0)][..], &[(39.0, 2.0)], &[(0.0, 1.0), (39.0, 1.0)], &[(-1.0, 2.0)]]
+        {
             assert!(matches!(Division::of(40.0, &at(wrong)), Err(Fault::TabsOverlap { .. })), "{wrong:?}");
         }
     }

@@ -124,7 +124,8 @@ impl Order<'_> {
     fn stretch(&mut self, stretch: usize, mark: usize, all: bool) {
         let end = mark + 1;
         // Past the closing point the contour is cut already, if it was begun there.
-        let closes = end == self.division.pieces.len() && self.division.pieces[0] == Piece::Stretch && mark > 0;
+        let closes =
+            end == self.division.pieces.len() && self.division.pieces[0] == Piece::Stretch && mark > 0;
         let over = if closes { self.plan.overcut } else { 0.0 };
         let start = Position { mark, laps: 0, over: 0.0 };
         let finish = Position { mark: end, laps: 0, over };

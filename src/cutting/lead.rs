@@ -44,11 +44,8 @@ pub(super) fn outwards(lead: Lead, stand: &Stand, hole: Option<Point>) -> Option
         Lead::Straight { length } => Some(straight(stand.at + stand.away * length)),
         Lead::Arc { radius, sweep } => {
             let left = Vector::new(-stand.heading.y, stand.heading.x);
-            let (towards, sense) = if stand.waste_left {
-                (left, Sense::CounterClockwise)
-            } else {
-                (-left, Sense::Clockwise)
-            };
+            let (towards, sense) =
+                if stand.waste_left { (left, Sense::CounterClockwise) } else { (-left, Sense::Clockwise) };
             let centre = stand.at + towards * radius;
             let (sin, cos) = libm::sincos(sweep.to_radians());
             // Seen from the centre, the arc turns away from −towards along the heading.

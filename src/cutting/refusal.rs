@@ -109,7 +109,9 @@ pub enum Fault {
         tab: usize,
     },
     /// The wire on its path would cut into another contour.
-    #[error("the wire in pass {pass} comes within {distance:.4} mm of contour {other}, and cuts {least:.4} mm wide to each side")]
+    #[error(
+        "the wire in pass {pass} comes within {distance:.4} mm of contour {other}, and cuts {least:.4} mm wide to each side"
+    )]
     CutsOther {
         /// Which pass, from 1.
         pass: usize,
@@ -129,7 +131,9 @@ pub enum Fault {
         length: f64,
     },
     /// A tab begins before the one before it has ended, or lies beyond the contour.
-    #[error("tab {tab} from {from:.3} to {to:.3} mm touches another one or the end of a contour of {length:.3} mm")]
+    #[error(
+        "tab {tab} from {from:.3} to {to:.3} mm touches another one or the end of a contour of {length:.3} mm"
+    )]
     TabsOverlap {
         /// Which tab, from 1.
         tab: usize,
@@ -141,7 +145,9 @@ pub enum Fault {
         length: f64,
     },
     /// The kerfs to both sides of a tab leave nothing of it.
-    #[error("tab {tab} is {length:.3} mm long on the wire's path, and the kerf on either side takes {kerf:.3} mm of it")]
+    #[error(
+        "tab {tab} is {length:.3} mm long on the wire's path, and the kerf on either side takes {kerf:.3} mm of it"
+    )]
     TabTooShort {
         /// Which tab, from 1.
         tab: usize,
@@ -157,7 +163,9 @@ pub enum Fault {
         pass: usize,
     },
     /// The wire does not come to an end of a tab, or not between it and the one before.
-    #[error("the wire of pass {pass} does not come to this end of a tab, or not between it and the one before")]
+    #[error(
+        "the wire of pass {pass} does not come to this end of a tab, or not between it and the one before"
+    )]
     TabLost {
         /// Which pass, from 1.
         pass: usize,
@@ -191,7 +199,9 @@ impl Refusal {
     pub fn help(&self) -> String {
         match &self.fault {
             Fault::Number { .. } => "give a length in millimetres or an angle in degrees".to_owned(),
-            Fault::Open => "close the contour in the drawing, or join its ends with a wider tolerance".to_owned(),
+            Fault::Open => {
+                "close the contour in the drawing, or join its ends with a wider tolerance".to_owned()
+            }
             Fault::EnclosesNothing => "draw it once only: a way drawn to and fro has no inside".to_owned(),
             Fault::Impossible { reason: Impossible::MeetsItself(_), .. } => {
                 "redraw the contour so that it does not cross itself".to_owned()
@@ -199,12 +209,16 @@ impl Refusal {
             Fault::Impossible { .. } => "move the drawing nearer to its origin".to_owned(),
             Fault::NoRoom { .. } => "use a thinner wire, or keep the other side of the contour".to_owned(),
             Fault::ComesApart { largest: Some(largest), .. } => {
-                format!("use an offset of {largest:.3} mm at most, or draw its parts as contours of their own")
+                format!(
+                    "use an offset of {largest:.3} mm at most, or draw its parts as contours of their own"
+                )
             }
             Fault::ComesApart { largest: None, .. } => {
                 "use a thinner wire, or draw its parts as contours of their own".to_owned()
             }
-            Fault::Holes { needed, .. } => format!("give one hole, or {needed}: one for each stretch in order"),
+            Fault::Holes { needed, .. } => {
+                format!("give one hole, or {needed}: one for each stretch in order")
+            }
             Fault::NoHole => "give the start hole, or a straight lead of a length".to_owned(),
             Fault::HoleInPart { kept: Kept::Inside } => {
                 "put the hole outside the contour, or keep what is outside".to_owned()
@@ -220,7 +234,8 @@ impl Refusal {
             }
             Fault::CutsPart { .. } => "make the lead shorter, or let the wire come in elsewhere".to_owned(),
             Fault::CutsTab { .. } => {
-                "use a straight lead, a smaller radius or a longer tab, or give a hole for each stretch".to_owned()
+                "use a straight lead, a smaller radius or a longer tab, or give a hole for each stretch"
+                    .to_owned()
             }
             Fault::CutsOther { .. } => "move the contours apart, or use a thinner wire".to_owned(),
             Fault::TabsTooLong { .. } => "use fewer or shorter tabs".to_owned(),
@@ -230,8 +245,12 @@ impl Refusal {
             Fault::TabTooShort { kerf, .. } => {
                 format!("make the tab longer than {:.3} mm by what is to hold the piece", 2.0 * kerf)
             }
-            Fault::EntryLost { .. } => "let the wire come in elsewhere, not in a slot that it does not enter".to_owned(),
-            Fault::TabLost { .. } => "move the tab away from the corner or slot that the wire does not enter".to_owned(),
+            Fault::EntryLost { .. } => {
+                "let the wire come in elsewhere, not in a slot that it does not enter".to_owned()
+            }
+            Fault::TabLost { .. } => {
+                "move the tab away from the corner or slot that the wire does not enter".to_owned()
+            }
             Fault::OvercutTooLong { .. } => "make the overcut shorter".to_owned(),
         }
     }

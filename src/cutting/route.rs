@@ -23,12 +23,7 @@ pub(super) struct Route {
 
 impl Route {
     /// The route of the contour with this number, from 0, when the wire stands at a point.
-    pub(super) fn of(
-        contours: &[Contour],
-        number: usize,
-        plan: &Plan,
-        at: Point,
-    ) -> Result<Self, Refusal> {
+    pub(super) fn of(contours: &[Contour], number: usize, plan: &Plan, at: Point) -> Result<Self, Refusal> {
         let contour = &contours[number];
         let refuse = |at, fault| Refusal { contour: number + 1, spot: contour.spot, at, fault };
         let course = course(contour).map_err(|(at, fault)| refuse(at, fault))?;
@@ -134,8 +129,8 @@ impl Cutter<'_> {
                     return Err(self.refusal(Some(at), fault));
                 }
             };
-            let track = Track::new(&self.course, &outline.path, left, &self.division.marks)
-                .map_err(|lost| {
+            let track =
+                Track::new(&self.course, &outline.path, left, &self.division.marks).map_err(|lost| {
                     let fault = match lost.mark {
                         0 => Fault::EntryLost { pass: n + 1 },
                         _ => Fault::TabLost { pass: n + 1 },
@@ -193,7 +188,8 @@ impl Cutter<'_> {
             }
             let (middle, heading) = track.leaving(0.5 * (begin + end));
             let away = self.away(middle, heading, 0, true);
-            let line = Element::Line { start: middle, end: middle + away * (end - begin) };
+            // Farther out than half its length, a way past the tab leaves it as broad as it is.
+            let line = Element::Line { start: middle, end: middle + away * (0.5 * (end - begin)) };
             self.uncut.push((mark, line));
             let length = marks[mark + 1] - marks[mark];
             self.summary.tabs.push(TabSummary { from, to, length, bridge });
@@ -346,11 +342,8 @@ impl Cutter<'_> {
         let kerf = kerf[0].max(kerf[1]);
         for (other, contour) in self.contours.iter().enumerate() {
             let own = other == self.number;
-            let (elements, least) = if own {
-                (self.course.elements(), offset)
-            } else {
-                (contour.path.elements(), kerf)
-            };
+            let (elements, least) =
+                if own { (self.course.elements(), offset) } else { (contour.path.elements(), kerf) };
             let within = least - TOUCH.min(least / 2.0);
             if let Some(hit) = nearest_within(way, elements, within) {
                 let fault = Fault::CutsPart { lane, other: other + 1, distance: hit.distance, least };
@@ -440,5 +433,5 @@ fn near(one: &Path, other: &Path, within: f64) -> bool {
     min.x < high.x + within && max.x > low.x - within && min.y < high.y + within && max.y > low.y - within
 }
 
-/// Ways may come nearer than they must by as much, mm: a micron, the rounding of their nodes.
-const TOUCH: f64 = 1e-3;
+/// Ways may come nearer than they must by as much, mm: the rounding of their nodes, at most half a micron in X and in Y.
+const TOUCH: f64 = 0.75e-3;

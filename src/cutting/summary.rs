@@ -110,7 +110,11 @@ impl fmt::Display for ContourSummary {
                 writeln!(f, "    not reached at {at}: the largest offset that does is {largest:.3} mm")?;
             }
             if pass.filled_corners > 0 {
-                writeln!(f, "    {} sharp inside corners get the radius {offset:.4} mm", pass.filled_corners)?;
+                writeln!(
+                    f,
+                    "    {} sharp inside corners get the radius {offset:.4} mm",
+                    pass.filled_corners
+                )?;
             }
         }
         for (n, tab) in self.tabs.iter().enumerate() {

@@ -75,8 +75,8 @@ pub fn passes(text: &str) -> Result<(Pass, Vec<Skim>), Misspelt> {
         let (run, words) = part.split_once('=').map_or((part, None), |(run, words)| (run, Some(words)));
         let (offset, way) = run.split_once(':').map_or((run, None), |(offset, way)| (offset, Some(way)));
         let distance = Distance::Offset(number(offset).ok_or_else(wrong)?);
-        let words: Vec<_> =
-            words.map_or_else(Vec::new, |words| words.split('+').map(|word| word.as_bytes().into()).collect());
+        let words: Vec<_> = words
+            .map_or_else(Vec::new, |words| words.split('+').map(|word| word.as_bytes().into()).collect());
         if words.iter().any(|word: &Box<[u8]>| word.is_empty()) {
             return Err(wrong());
         }
@@ -102,7 +102,8 @@ fn misspelt(found: &str, what: &'static str, help: &'static str) -> Misspelt {
 
 const LEAD: &str = "write direct, straight:LENGTH (mm) or arc:RADIUS:SWEEP (mm and degrees)";
 const TABS: &str = "write none, COUNT:LENGTH (mm) or @FROM+LENGTH,@FROM+LENGTH (mm along the contour)";
-const PASSES: &str = "write OFFSET=WORDS,OFFSET:back=WORDS,OFFSET:again=WORDS (mm; words joined by +, or left out)";
+const PASSES: &str =
+    "write OFFSET=WORDS,OFFSET:back=WORDS,OFFSET:again=WORDS (mm; words joined by +, or left out)";
 
 #[cfg(test)]
 mod tests {
@@ -130,7 +131,9 @@ mod tests {
 
     #[test]
     fn other_spellings_are_refused_with_what_is_right() {
-        for wrong in ["", "straight", "straight:", "straight:-1", "straight:1e3", "arc:1", "arc:1:2:3", "Direct"] {
+        for wrong in
+            ["", "straight", "straight:", "straight:-1", "straight:1e3", "arc:1", "arc:1:2:3", "Direct"]
+        {
             let error = wrong.parse::<Lead>().unwrap_err();
             assert_eq!((error.found.as_str(), error.help), (wrong, LEAD));
         }

@@ -54,7 +54,6 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
                         | Fault::EntryLost { .. }
                         | Fault::TabsTooLong { .. }
                 );
-                println!("REF {}", format!("{:?}", refusal.fault).split_whitespace().next().unwrap());
                 prop_assert!(expected, "{refusal}");
                 Ok(())
             }
@@ -62,14 +61,14 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
     });
     outcome.unwrap();
     let counts = [judged.get(), tabbed.get(), skimmed.get(), arcs.get()];
-    println!("COUNTS {counts:?}");
     assert!(counts[0] > 200 && counts[1] > 80 && counts[2] > 100 && counts[3] > 40, "{counts:?}");
 }
 
 #[test]
 fn the_oracle_sees_what_is_lost_shifted_cut_twice_or_too_early() {
     let (contour, plan) = block();
-    let motions: Vec<Motion> = Cutting::new(vec![contour.clone()], plan.clone()).unwrap().map(Result::unwrap).collect();
+    let motions: Vec<Motion> =
+        Cutting::new(vec![contour.clone()], plan.clone()).unwrap().map(Result::unwrap).collect();
     assert_eq!(fault(&contour, &plan, &motions), Ok(()));
     let stop = motions.iter().position(|motion| motion.act == Act::Stop(Stop::Pause)).unwrap();
     let cuts: Vec<usize> = (0..motions.len()).filter(|n| cut(&motions[*n]).is_some()).collect();
@@ -96,6 +95,15 @@ fn the_oracle_sees_what_is_lost_shifted_cut_twice_or_too_early() {
         }
     };
     assert!(check(&shift).is_err());
+    let mut cuts = classified(&contour.path, &plan, &[0.15, 0.13], &motions).unwrap();
+    let outline = offset(&contour.path, -0.15, Corners::Round).unwrap().outlines.remove(0).path;
+    let judged = |cuts: &[Cut]| once(&contour.path, &plan, (0, 0.15), &outline, cuts);
+    assert_eq!(judged(&cuts), Ok(()));
+    let lost = cuts.remove(1);
+    assert!(judged(&cuts).unwrap_err().contains("cut 0 times"));
+    cuts.insert(1, lost);
+    cuts.push(lost);
+    assert!(judged(&cuts).unwrap_err().contains("cut 2 times"));
 }
 
 /// A block of 20 by 12 mm with two rounded corners, cut round from the middle of a side, with a tab.
@@ -180,6 +188,7 @@ fn any_plan() -> impl Strategy<Value = Plan> {
 }
 
 /// A cut beside the contour or through the waste, in which pass, and after how many stops.
+#[derive(Clone, Copy)]
 struct Cut {
     element: Element,
     pass: usize,
@@ -276,7 +285,13 @@ fn lengths(plan: &Plan, pass: usize, whole: f64, cuts: &[Cut]) -> Result<(), Str
 }
 
 /// Every point of the path is cut once in each pass, but for overcuts: stretches before any stop, tabs behind theirs.
-fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts: &[Cut]) -> Result<(), String> {
+fn once(
+    path: &Path,
+    plan: &Plan,
+    (pass, by): (usize, f64),
+    outline: &Path,
+    cuts: &[Cut],
+) -> Result<(), String> {
     let tabs = tabs(path, plan);
     let whole = path.length();
     let mut over: Vec<f64> = tabs.iter().flat_map(|tab| [tab.0, tab.1]).collect();
@@ -287,7 +302,8 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
         for (point, _) in samples(element, count) {
             let along = along(path, point);
             // Near an end of a piece, a hair to either side makes the difference; an overcut reaches past it.
-            let reach = |end: &f64| (at(path, *end) - point).norm() - distance(outline, at(path, *end)).max(by);
+            let reach =
+                |end: &f64| (at(path, *end) - point).norm() - distance(outline, at(path, *end)).max(by);
             let near_end = over.iter().any(|end| reach(end) <= 6.0 * UM);
             // In a slot as wide as the kerf the path lies on itself.
             let beside_itself = ways.iter().enumerate().any(|(m, way)| {
@@ -320,7 +336,9 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
                 return Err(format!("{point} in a tab is cut before the stop"));
             }
             if !tab && held && runs[0].stops > 0 {
-                return Err(format!("{point} outside the tabs {tabs:?} at {along} of {whole} is cut only after a stop"));
+                return Err(format!(
+                    "{point} outside the tabs {tabs:?} at {along} of {whole} is cut only after a stop"
+                ));
             }
         }
     }
@@ -331,9 +349,10 @@ fn once(path: &Path, plan: &Plan, (pass, by): (usize, f64), outline: &Path, cuts
 fn tabs(path: &Path, plan: &Plan) -> Vec<(f64, f64)> {
     let whole = path.length();
     match plan.tabs {
-        Tabs::Even { count, length } => {
-            (1..=count).map(|n| whole * f64::from(n) / f64::from(count)).map(|end| (end - length, end)).collect()
-        }
+        Tabs::Even { count, length } => (1..=count)
+            .map(|n| whole * f64::from(n) / f64::from(count))
+            .map(|end| (end - length, end))
+            .collect(),
         _ => Vec::new(),
     }
 }
