@@ -345,7 +345,8 @@ pub(super) fn check_numbers(plan: &Plan) -> Result<(), Refusal> {
 
 /// Refuses a point that is none, or farther than any machine.
 pub(super) fn check_point(what: &'static str, point: Point) -> Result<(), Refusal> {
-    match [point.x, point.y].into_iter().find(|value| !(value.abs() <= FARTHEST)) {
+    let is_far = |value: &f64| value.is_nan() || value.abs() > FARTHEST;
+    match [point.x, point.y].into_iter().find(is_far) {
         None => Ok(()),
         Some(value) => {
             let fault = Fault::Number { what, value, must: "within 100 m of the origin" };

@@ -188,7 +188,8 @@ impl Cutter<'_> {
             }
             let (middle, heading) = track.leaving(0.5 * (begin + end));
             let away = self.away(middle, heading, 0, true);
-            let line = Element::Line { start: middle, end: middle + away * (end - begin) };
+            // Farther out than half its length, a way past the tab leaves it as broad as it is.
+            let line = Element::Line { start: middle, end: middle + away * (0.5 * (end - begin)) };
             self.uncut.push((mark, line));
             let length = marks[mark + 1] - marks[mark];
             self.summary.tabs.push(TabSummary { from, to, length, bridge });
@@ -432,5 +433,5 @@ fn near(one: &Path, other: &Path, within: f64) -> bool {
     min.x < high.x + within && max.x > low.x - within && min.y < high.y + within && max.y > low.y - within
 }
 
-/// Ways may come nearer than they must by as much, mm: a micron, the rounding of their nodes.
-const TOUCH: f64 = 1e-3;
+/// Ways may come nearer than they must by as much, mm: the rounding of their nodes, at most half a micron in X and in Y.
+const TOUCH: f64 = 0.75e-3;

@@ -54,7 +54,6 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
                         | Fault::EntryLost { .. }
                         | Fault::TabsTooLong { .. }
                 );
-                println!("REF {}", format!("{:?}", refusal.fault).split_whitespace().next().unwrap());
                 prop_assert!(expected, "{refusal}");
                 Ok(())
             }
@@ -62,7 +61,6 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
     });
     outcome.unwrap();
     let counts = [judged.get(), tabbed.get(), skimmed.get(), arcs.get()];
-    println!("COUNTS {counts:?}");
     assert!(counts[0] > 200 && counts[1] > 80 && counts[2] > 100 && counts[3] > 40, "{counts:?}");
 }
 
@@ -97,6 +95,15 @@ fn the_oracle_sees_what_is_lost_shifted_cut_twice_or_too_early() {
         }
     };
     assert!(check(&shift).is_err());
+    let mut cuts = classified(&contour.path, &plan, &[0.15, 0.13], &motions).unwrap();
+    let outline = offset(&contour.path, -0.15, Corners::Round).unwrap().outlines.remove(0).path;
+    let judged = |cuts: &[Cut]| once(&contour.path, &plan, (0, 0.15), &outline, cuts);
+    assert_eq!(judged(&cuts), Ok(()));
+    let lost = cuts.remove(1);
+    assert!(judged(&cuts).unwrap_err().contains("cut 0 times"));
+    cuts.insert(1, lost);
+    cuts.push(lost);
+    assert!(judged(&cuts).unwrap_err().contains("cut 2 times"));
 }
 
 /// A block of 20 by 12 mm with two rounded corners, cut round from the middle of a side, with a tab.
@@ -181,6 +188,7 @@ fn any_plan() -> impl Strategy<Value = Plan> {
 }
 
 /// A cut beside the contour or through the waste, in which pass, and after how many stops.
+#[derive(Clone, Copy)]
 struct Cut {
     element: Element,
     pass: usize,
