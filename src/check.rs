@@ -254,6 +254,11 @@ impl Check {
         }
     }
 
+    /// Takes what was found by whoever read the program.
+    pub fn add(&mut self, finding: Finding) {
+        self.ledger.add(finding);
+    }
+
     /// Takes what a reader could not read, and says whether it is worth going on.
     pub fn see_error(&mut self, error: &ReadError) -> bool {
         self.unreadable = true;

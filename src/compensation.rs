@@ -9,23 +9,47 @@
 //! A closed contour is offset as a whole ([`crate::geometry::offset`]), so that elements the wire cannot enter are
 //! left out, and told as [`Warning`]s. Where it begins in an inside corner, the wire begins where its ways meet: a
 //! control would cut into the corner there. An open run, as one with arcs for lead-in and lead-out or with an overcut,
-//! is offset corner by corner ([`local`]) as a control does, and refused where an element of it vanishes.
+//! is offset corner by corner ([`local`]) as a control does, and refused where an element of it vanishes or the outline
+//! in it has a place that the wire cannot enter.
 //!
 //! Taper is passed on: it tilts the wire about the path and does not move it.
+//!
+//! ```
+//! use dripfeed::compensation::Compensated;
+//! use dripfeed::formats::gcode::{Dialect, Motions};
+//! use dripfeed::geometry::offset::Corners;
+//! use dripfeed::motion::{Act, Motion};
+//!
+//! let text = "G21 G90 G92 X0. Y0.\nG41 D1 G01 X5.\nG03 I-5. J0.\nG40 G01 X0.\nM02\n";
+//! let dialect = Dialect::named("generic").expect("a built-in dialect")?;
+//! let motions = Motions::new(text.as_bytes(), dialect);
+//! let mut wire = Compensated::new(motions, [(1, 0.1)].into(), Corners::Round);
+//! let made: Vec<Motion> = wire.by_ref().collect::<Result<_, _>>()?;
+//! let ends = made.iter().filter_map(|motion| match motion.act {
+//!     Act::Move { element, .. } => Some(element.end().x),
+//!     _ => None,
+//! });
+//! assert_eq!(ends.collect::<Vec<_>>(), [4.9, 4.9, 0.0]);
+//! assert!(wire.take_warnings().is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod local;
+pub mod put_on;
 mod run;
 #[cfg(test)]
 mod tests;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
+use std::fmt;
 
 use thiserror::Error;
 
 use crate::formats::ReadError;
 use crate::geometry::offset::{Corners, Unreached};
 use crate::geometry::{Element, Point};
+use crate::motion::runs::ContourError;
 use crate::motion::{Act, Motion, Offset, Side, Stop};
 use crate::place::Spot;
 use run::Run;
@@ -45,7 +69,7 @@ pub struct Compensated<I> {
     is_over: bool,
 }
 
-/// A part of a contour that the wire cannot enter and passes by.
+/// A part of a contour that the wire cannot enter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warning {
     /// The block of the first element that is not touched.
@@ -54,6 +78,29 @@ pub struct Warning {
     pub spot: Spot,
     /// What is not touched; its indices count the elements from the contour's first.
     pub unreached: Unreached,
+    /// What becomes of it.
+    pub fate: Fate,
+}
+
+/// What becomes of a part that the wire cannot enter.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Fate {
+    /// The wire passes it by: material stays there.
+    PassedBy,
+    /// The wire cuts into it, in an open run led corner by corner.
+    CutInto,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Unreached { at, largest, .. } = self.unreached;
+        let (what, does) = match self.fate {
+            Fate::PassedBy => ("does not reach", "does"),
+            Fate::CutInto => ("cuts into", "does not"),
+        };
+        write!(f, "the wire {what} the contour at X{:.3} Y{:.3}; ", at.x, at.y)?;
+        write!(f, "the largest offset that {does} is {largest:.3} mm")
+    }
 }
 
 /// Why a program has no path of the wire.
@@ -77,6 +124,28 @@ pub enum CompensationError {
     },
 }
 
+impl From<ContourError> for CompensationError {
+    fn from(error: ContourError) -> Self {
+        match error {
+            ContourError::Read(error) => Self::Read(error),
+            ContourError::Contour { message, block, spot, help } => {
+                Self::Program { message, block, spot, help }
+            }
+        }
+    }
+}
+
+impl From<CompensationError> for ContourError {
+    fn from(error: CompensationError) -> Self {
+        match error {
+            CompensationError::Read(error) => Self::Read(error),
+            CompensationError::Program { message, block, spot, help } => {
+                Self::Contour { message, block, spot, help }
+            }
+        }
+    }
+}
+
 #[derive(Debug)]
 enum State {
     /// The numbers are the wire's.
@@ -84,7 +153,7 @@ enum State {
     /// An offset is switched on; the move that leads in is awaited.
     Starting { on: On },
     /// A contour is collected.
-    Running { on: On, run: Run },
+    Running { on: On, run: Box<Run> },
 }
 
 /// An offset that is switched on.
@@ -99,7 +168,11 @@ struct On {
     spot: Spot,
 }
 
-impl<I: Iterator<Item = Result<Motion, ReadError>>> Compensated<I> {
+impl<I, E> Compensated<I>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<CompensationError>,
+{
     /// The wire's path for motions, with what the registers of the control hold, mm; a distance in the motion itself
     /// comes first.
     pub fn new(source: I, registers: BTreeMap<u32, f64>, corners: Corners) -> Self {
@@ -126,7 +199,7 @@ impl<I: Iterator<Item = Result<Motion, ReadError>>> Compensated<I> {
             State::Off => match motion.act {
                 Act::Offset(said) => self.switched(said, &motion)?,
                 Act::Move { .. } => {
-                    let moved = self.from_where_it_stands(motion)?;
+                    let moved = self.begun_where_it_stands(motion)?;
                     self.ready.push_back(Ok(moved));
                 }
                 _ => self.ready.push_back(Ok(motion)),
@@ -138,8 +211,8 @@ impl<I: Iterator<Item = Result<Motion, ReadError>>> Compensated<I> {
                     self.ready.push_back(Ok(motion));
                 }
                 Act::Move { element: Element::Line { .. }, upper: None, .. } => {
-                    let lead_in = self.from_where_it_stands(motion)?;
-                    self.state = State::Running { on, run: Run::new(lead_in) };
+                    let lead_in = self.begun_where_it_stands(motion)?;
+                    self.state = State::Running { on, run: Box::new(Run::new(lead_in)) };
                 }
                 Act::Move { .. } => {
                     return Err(fault(
@@ -210,7 +283,7 @@ impl<I: Iterator<Item = Result<Motion, ReadError>>> Compensated<I> {
     }
 
     /// A move begun where the wire stands: it leads out of an offset, or is any other.
-    fn from_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, CompensationError> {
+    fn begun_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, CompensationError> {
         let Act::Move { element, upper, .. } = &mut motion.act else { return Ok(motion) };
         let is_empty = matches!(element, Element::Line { start, end } if start == end);
         match (self.standing, *element) {
@@ -242,7 +315,11 @@ impl<I: Iterator<Item = Result<Motion, ReadError>>> Compensated<I> {
     }
 }
 
-impl<I: Iterator<Item = Result<Motion, ReadError>>> Iterator for Compensated<I> {
+impl<I, E> Iterator for Compensated<I>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<CompensationError>,
+{
     type Item = Result<Motion, CompensationError>;
 
     fn next(&mut self) -> Option<Self::Item> {

@@ -4,5 +4,7 @@
 
 #[path = "fuzz/four_b.rs"]
 mod four_b;
+#[path = "fuzz/gcode.rs"]
+mod gcode;
 #[path = "fuzz/three_b.rs"]
 mod three_b;

@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, CommandFactory as _, Parser, ValueEnum, error::ErrorKind};
-use mock_controller::{FaultKind, Framing, LabelSkip, Model, Pace, Settings, Start, Torn, Until};
+use mock_controller::{
+    ArcCentre, Dialect as Written, FaultKind, Framing, GcodeSettings, IgnoredWords, LabelSkip, Model, Pace,
+    Settings, Start, Taper, Torn, UnitWithoutPoint, Until,
+};
 
-/// A wire-EDM control to feed: receives 3B over a paced line, cuts it pulse by pulse, reports where it stood.
+/// A wire-EDM control to feed: receives 3B, 4B or G-code over a paced line, cuts it pulse by pulse, reports where it stood.
 ///
 /// The first line on standard output is `ready` and where to connect. Exit codes: 0 done, 1 a failure of its own or the
 /// system's, 2 wrong usage, 6 the control raised an alarm.
@@ -16,6 +19,10 @@ use mock_controller::{FaultKind, Framing, LabelSkip, Model, Pace, Settings, Star
 pub(crate) struct Words {
     #[command(flatten)]
     place: Place,
+
+    /// A file of these options, one `key = value` a line, keys without the dashes; the command line goes before it.
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
 
     /// How the control and its sender talk.
     #[arg(long, value_enum, default_value = "dc-codes")]
@@ -36,6 +43,37 @@ pub(crate) struct Words {
     /// What the programs are written in.
     #[arg(long, value_enum, default_value = "3b")]
     dialect: Dialect,
+
+    /// The offset the control holds, mm. 4B: + wire outside (punch), - inside (die). G-code: what every D but D0 stands
+    /// for, not negative.
+    #[arg(long, value_name = "MM", default_value_t = 0.0, allow_negative_numbers = true)]
+    wire_offset: f64,
+
+    /// 4B: the taper keyed in, degrees; the lead-in's flag declares its sense. An upper guide is cut as well.
+    #[arg(long, value_name = "DEG")]
+    taper: Option<f64>,
+
+    /// H2, from the plane of the program to the upper guide, mm.
+    #[arg(long, value_name = "MM", default_value_t = 100.0, requires = "taper")]
+    taper_height: f64,
+
+    /// G-code: what I and J are counted from.
+    #[arg(long, value_enum, default_value = "incremental")]
+    arc_centre: Centre,
+
+    /// G-code: what a length without a point means, `um` being the least unit (0.001 mm, 0.0001 inch), `mm` the whole one
+    /// (mm, inch); `error` is the alarm `number`.
+    #[arg(long, value_enum, default_value = "error")]
+    unit_without_point: Unit,
+
+    /// G-code: pass over lines that begin with `/`.
+    #[arg(long)]
+    block_skip: bool,
+
+    /// G-code: words to pass over, and to count: letters, words and ranges. Any other word that is not acted on is the
+    /// alarm `word` [default: C,E,S,H,T,P,F,M03-M29,M31-M97].
+    #[arg(long, value_name = "LIST")]
+    ignore_words: Option<IgnoredWords>,
 
     /// How lines and arcs become pulses; unverified for any control.
     #[arg(long, value_enum, default_value = "rotated")]
@@ -150,6 +188,24 @@ enum Dialect {
     /// B X B Y B J G Z.
     #[value(name = "3b")]
     ThreeB,
+    /// B X B Y B J B R D|DD G Z among 3B blocks: the outline; the control holds the offset.
+    #[value(name = "4b")]
+    FourB,
+    /// Lines of words, absolute or incremental; G41 and G42 put the wire beside the path.
+    Gcode,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Centre {
+    Incremental,
+    Absolute,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Unit {
+    Um,
+    Mm,
+    Error,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -204,7 +260,7 @@ impl Words {
             (None, None, Some(device)) => At::Serial(device),
             (None, None, None) => return Err(wrong("one of --pty, --tcp and --port is needed")),
         };
-        let (Protocol::DcCodes, Dialect::ThreeB) = (self.protocol, self.dialect);
+        let Protocol::DcCodes = self.protocol;
         let baud = self.baud.unwrap_or(9600);
         let pace = if self.unpaced { Pace::Unpaced } else { Pace::Paced { baud, framing: self.framing } };
         let mut faults = BTreeMap::new();
@@ -218,6 +274,27 @@ impl Words {
         }
         let settings = Settings {
             pace,
+            dialect: match self.dialect {
+                Dialect::ThreeB => Written::ThreeB,
+                Dialect::FourB => Written::FourB,
+                Dialect::Gcode => Written::Gcode,
+            },
+            // A decimal number of mm is no whole number of binary µm: 0.07 must be 70.
+            wire_offset_um: (self.wire_offset * 1e6).round() / 1e3,
+            taper: self.taper.map(|degrees| Taper { degrees, height_um: self.taper_height * 1000.0 }),
+            gcode: GcodeSettings {
+                arc_centre: match self.arc_centre {
+                    Centre::Incremental => ArcCentre::Incremental,
+                    Centre::Absolute => ArcCentre::Absolute,
+                },
+                unit_without_point: match self.unit_without_point {
+                    Unit::Um => UnitWithoutPoint::Least,
+                    Unit::Mm => UnitWithoutPoint::Whole,
+                    Unit::Error => UnitWithoutPoint::Error,
+                },
+                block_skip: self.block_skip,
+                ignored_words: self.ignore_words.unwrap_or_default(),
+            },
             interpolator: match self.interpolator {
                 Interpolator::Rotated => Model::Rotated,
                 Interpolator::Mirrored => Model::Mirrored,

@@ -15,14 +15,16 @@
 mod cutter;
 mod flow;
 mod input;
+mod lines;
+mod plan;
 pub(crate) mod reader;
 pub mod settings;
+mod source;
 mod text;
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use crate::interpolator::length::length_um;
 use crate::line::back::Back;
 use crate::line::fault::Faults;
 use crate::line::forward::{Forward, Mark};
@@ -31,8 +33,10 @@ use crate::observer::{BlockEnd, Observer, Unobserved};
 use crate::report::Report;
 use cutter::{Cut, Item, Queued};
 use flow::Flow;
-use reader::Reader;
+use plan::Plan;
+pub use plan::gcode::{ArcCentre, GcodeSettings, IgnoredWords, NotAWord, UnitWithoutPoint};
 use settings::{Settings, SettingsError};
+use source::Source;
 use text::Text;
 
 /// A simulated control on a simulated line.
@@ -46,7 +50,7 @@ pub struct Controller<O: Observer = Unobserved> {
     now: Duration,
     forward: Forward,
     back: Back,
-    reader: Reader,
+    reader: Source,
     text: Text,
     faults: Faults,
     utilisation: Utilisation,
@@ -54,6 +58,7 @@ pub struct Controller<O: Observer = Unobserved> {
     queue: VecDeque<Queued>,
     /// Characters of the queued blocks.
     queued_characters: usize,
+    plan: Plan,
     cut: Option<Cut>,
     tally: Tally,
     observer: O,
@@ -66,6 +71,9 @@ struct Tally {
     pulses: u64,
     x_um: i64,
     y_um: i64,
+    /// Where the wire stands at the upper guide.
+    upper_um: [i64; 2],
+    upper_pulses: u64,
     path_length_um: f64,
     characters: u64,
     max_overrun: u64,
@@ -101,13 +109,14 @@ impl<O: Observer> Controller<O> {
             now: Duration::ZERO,
             forward: Forward::new(settings.pace, settings.fifo_bytes),
             back: Back::new(settings.pace, settings.latency),
-            reader: Reader::new(settings.label_skip),
+            reader: Source::new(settings.dialect, settings.label_skip),
             text: Text::default(),
             faults: Faults::new(&settings.faults, settings.seed),
             utilisation: Utilisation::default(),
             flow: Flow::default(),
             queue: VecDeque::new(),
             queued_characters: 0,
+            plan: Plan::new(&settings, [0, 0]),
             cut: None,
             tally: Tally::default(),
             observer,
@@ -271,6 +280,9 @@ impl<O: Observer> Controller<O> {
             skipped: self.reader.skipped(),
             unread: tally.unread,
             held_seconds: self.utilisation.held().as_secs_f64(),
+            upper_end_um: self.settings.taper.map(|_| tally.upper_um),
+            words_passed_over: self.plan.passed_over(),
+            upper_pulses: self.settings.taper.map(|_| tally.upper_pulses),
         }
     }
 
@@ -306,9 +318,9 @@ impl<O: Observer> Controller<O> {
     }
 
     /// Takes up what a block has done.
-    fn executed(&mut self, end: &BlockEnd, travel: &crate::interpolator::Travel) {
+    fn executed(&mut self, end: &BlockEnd, length_um: f64) {
         self.tally.blocks = end.number;
-        self.tally.path_length_um += length_um(&end.block, travel);
+        self.tally.path_length_um += length_um;
         self.observer.block_end(end);
     }
 

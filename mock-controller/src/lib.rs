@@ -9,16 +9,17 @@
 //!    ▼                                                 │ latency
 //!  line     driver FIFO ─▶ shift register, faults      │ one character at a time
 //!    ▼                                                 │
-//!  control  reader ─▶ bounded buffer ─▶ cutter ──── DC1 DC3 NAK SYN
-//!                      whole blocks      │
-//!                                        ▼
+//!  control  reader ─▶ bounded buffer ─▶ plan ─▶ cutter ──── DC1 DC3 NAK SYN
+//!                      whole blocks      offset  │
+//!                                               ▼
 //!  interpolator                        pulses, 1 µm each ─▶ Observer, Report
 //! ```
 //!
 //! Everything above is sans-IO: time is a [`std::time::Duration`] since an origin of the caller's choice and only moves by
 //! [`Controller::advance`]. [`shell`] alone has a clock, a pseudo-terminal, a socket or a serial device.
 //!
-//! What it deliberately does not do: other dialects than 3B, other protocols than the DC codes, wire offset, taper.
+//! What it deliberately does not do: other dialects than 3B, 4B and plain G-code (no macros), other protocols
+//! than the DC codes, taper in G-code.
 #![warn(missing_docs)]
 
 pub mod control;
@@ -26,12 +27,16 @@ pub mod dialect;
 pub mod interpolator;
 pub mod line;
 pub mod observer;
+mod outline;
 pub mod picture;
 pub mod report;
 pub mod shell;
 
 pub use control::Controller;
-pub use control::settings::{LabelSkip, Settings, SettingsError, Start, Torn, Until};
+pub use control::settings::{LabelSkip, Settings, SettingsError, Start, Taper, Torn, Until};
+pub use control::{ArcCentre, GcodeSettings, IgnoredWords, NotAWord, UnitWithoutPoint};
+pub use dialect::Dialect;
+pub use dialect::four_b::{Flag, FourBlock, Fourth, Marks, parse_four_block};
 pub use dialect::three_b::{Axis, Block, Kind, Quadrant, parse_block};
 pub use interpolator::{Model, Travel};
 pub use line::fault::FaultKind;

@@ -3,14 +3,17 @@
 //! All that the control does is in the library; all that touches the system is in the library's shell.
 
 mod cli;
+mod machine;
 
+use std::ffi::OsString;
 use std::io::{self, Write as _};
 use std::net::TcpListener;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 use mock_controller::Controller;
 use mock_controller::shell::files::{Files, write_report};
 use mock_controller::shell::serial::SerialLink;
@@ -20,7 +23,14 @@ use mock_controller::shell::{Link, serve};
 use cli::{At, Job, Words};
 
 fn main() -> ExitCode {
-    let job = match Words::parse().job() {
+    let words = match all_words() {
+        Ok(words) => words,
+        Err(error) => {
+            eprintln!("mock-controller: error: {error}");
+            return ExitCode::from(if error.kind() == io::ErrorKind::InvalidData { 2 } else { 1 });
+        }
+    };
+    let job = match Words::parse_from(words).job() {
         Ok(job) => job,
         Err(error) => error.exit(),
     };
@@ -37,6 +47,22 @@ fn main() -> ExitCode {
     }
 }
 
+/// The command line, with the options of the machine's file if it names one.
+fn all_words() -> io::Result<Vec<OsString>> {
+    let mut words: Vec<OsString> = std::env::args_os().collect();
+    if let Some(file) = machine::named(&words) {
+        let name = PathBuf::from(&file);
+        let told = |kind, error: &dyn std::fmt::Display| {
+            io::Error::new(kind, format!("{}: {error}", name.display()))
+        };
+        let text = std::fs::read_to_string(&file).map_err(|error| told(error.kind(), &error))?;
+        let added = machine::words(&text, &words, &Words::command())
+            .map_err(|error| told(io::ErrorKind::InvalidData, &error))?;
+        words.extend(added);
+    }
+    Ok(words)
+}
+
 /// How a run that did not fail ended.
 enum Outcome {
     Done,
@@ -49,6 +75,7 @@ fn run(job: &Job) -> io::Result<Outcome> {
         signal_hook::flag::register(signal, Arc::clone(&stop))?;
     }
     let files = Files::create(job.trace.as_deref(), job.save.as_deref(), job.picture.as_deref())?;
+    let files = if job.settings.taper.is_some() { files.with_upper() } else { files };
     let mut control = Controller::observed(job.settings.clone(), files).map_err(io::Error::other)?;
     let (mut link, ready) = open(job)?;
     writeln!(io::stdout(), "ready {ready}")?;

@@ -18,6 +18,12 @@ pub trait Observer {
         let _ = (at, block, x_um, y_um);
     }
 
+    /// As [`Observer::pulse`], of the upper guide's axes; only with a taper. Its steps and those of the plane of the program
+    /// are told in the order in which they are taken, in proportion.
+    fn upper_pulse(&mut self, at: Duration, block: u64, u_um: i64, v_um: i64) {
+        let _ = (at, block, u_um, v_um);
+    }
+
     /// A block has been executed complete.
     fn block_end(&mut self, end: &BlockEnd) {
         let _ = end;
@@ -67,6 +73,10 @@ impl<O: Observer + ?Sized> Observer for &mut O {
         (**self).pulse(at, block, x_um, y_um);
     }
 
+    fn upper_pulse(&mut self, at: Duration, block: u64, u_um: i64, v_um: i64) {
+        (**self).upper_pulse(at, block, u_um, v_um);
+    }
+
     fn block_end(&mut self, end: &BlockEnd) {
         (**self).block_end(end);
     }
@@ -83,6 +93,10 @@ impl<O: Observer + ?Sized> Observer for Box<O> {
 
     fn pulse(&mut self, at: Duration, block: u64, x_um: i64, y_um: i64) {
         (**self).pulse(at, block, x_um, y_um);
+    }
+
+    fn upper_pulse(&mut self, at: Duration, block: u64, u_um: i64, v_um: i64) {
+        (**self).upper_pulse(at, block, u_um, v_um);
     }
 
     fn block_end(&mut self, end: &BlockEnd) {
@@ -103,6 +117,12 @@ impl<O: Observer> Observer for Option<O> {
     fn pulse(&mut self, at: Duration, block: u64, x_um: i64, y_um: i64) {
         if let Some(observer) = self {
             observer.pulse(at, block, x_um, y_um);
+        }
+    }
+
+    fn upper_pulse(&mut self, at: Duration, block: u64, u_um: i64, v_um: i64) {
+        if let Some(observer) = self {
+            observer.upper_pulse(at, block, u_um, v_um);
         }
     }
 
@@ -131,6 +151,15 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         }
         if self.1.wants_pulses() {
             self.1.pulse(at, block, x_um, y_um);
+        }
+    }
+
+    fn upper_pulse(&mut self, at: Duration, block: u64, u_um: i64, v_um: i64) {
+        if self.0.wants_pulses() {
+            self.0.upper_pulse(at, block, u_um, v_um);
+        }
+        if self.1.wants_pulses() {
+            self.1.upper_pulse(at, block, u_um, v_um);
         }
     }
 

@@ -28,7 +28,8 @@ pub struct Report {
     /// SHA-256 of the decoded program text, in hex.
     pub sha256: String,
     /// The alarm that stopped the control: `overrun`, `buffer-overflow`, `format`, `endless-block`, `arc-centre`,
-    /// `parity`, `nak`, `nak-storm`.
+    /// `parity`, `nak`, `nak-storm`; with an offset held `tangency`, `radius`, `side`, `flag`, `lead-in`, `taper`;
+    /// with G-code `word`, `number`, `arc`, `call`, `compensation`, `radius`, `interference`.
     pub alarm: Option<String>,
     /// The faults that really struck, by kind.
     pub faults: BTreeMap<String, u64>,
@@ -49,4 +50,13 @@ pub struct Report {
     pub unread: u64,
     /// Time held between the first and the last character, s.
     pub held_seconds: f64,
+    /// Where the wire stands at the upper guide, as `end_um`; only with a taper.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_end_um: Option<[i64; 2]>,
+    /// Steps of the upper guide's axes, over the plane of the program; only with a taper.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_pulses: Option<u64>,
+    /// Words of G-code that were understood and not acted on (conditions, taper), and how often.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub words_passed_over: BTreeMap<String, u64>,
 }

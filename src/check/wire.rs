@@ -112,7 +112,7 @@ impl Wire {
                     crossings(&run, told, tell);
                 });
             }
-            Seen::Passed(Warning { block, spot, unreached }) => {
+            Seen::Passed(Warning { block, spot, unreached, .. }) => {
                 let message = format!(
                     "the wire does not reach the contour at {:.3}, {:.3} mm: the offset is too large",
                     unreached.at.x, unreached.at.y

@@ -24,8 +24,10 @@ use super::motions::{Motions, OfPart, Reading};
 use super::registers::Registers;
 use super::{machines, print, print_json};
 use crate::check::{Check, Finding, Format, Kept, Looked, Report, Settings, Severity, wire};
+use crate::drawing::finding as drawing;
 use crate::interpolator::Model;
 use crate::motion::Motion;
+use crate::place::Spot;
 use crate::profile::Profile;
 
 /// Check a program: everything wrong with it in one run, nothing is sent
@@ -34,8 +36,6 @@ pub(super) struct Options {
     /// A program, a part file, or - for standard input
     #[arg(value_name = "IN")]
     input: String,
-    #[command(flatten)]
-    reading: Reading,
     #[command(flatten)]
     registers: Registers,
     /// The machine to check against: a built-in profile or a file [default: generic-iso]
@@ -53,6 +53,8 @@ pub(super) struct Options {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -69,7 +71,8 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
     // Wrong arcs are judged here, and so is what stands behind them.
-    let reading = Reading { keeps_wrong_arcs: true, ..options.reading.clone() };
+    let reading =
+        Reading { keeps_wrong_arcs: true, of_machine: profile.dialect.clone(), ..options.reading.clone() };
     let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {
@@ -81,7 +84,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         for (code, count) in &report.more {
             say!("and {count} more of {code}");
         }
-        print(account(&report, &motions.name, options).as_bytes())?;
+        print(account(&report, &motions.places.name, options).as_bytes())?;
     }
     match (report.errors, report.warnings) {
         (0, 0) => Ok(()),
@@ -107,6 +110,17 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
         restart_points: options.restart_points,
         syntax_only: options.syntax_only,
     });
+    for found in motions.drawn.iter().flat_map(|drawing| &drawing.report) {
+        let severity = match found.severity {
+            drawing::Severity::Fault => Severity::Error,
+            drawing::Severity::Warning => Severity::Warning,
+            // What is as it should be is no finding.
+            drawing::Severity::Note => continue,
+        };
+        let spot = Spot { line: found.line, column: u64::from(found.line > 0), byte: 0 };
+        let (message, help) = (found.to_string(), found.help.clone());
+        check.add(Finding { severity, code: found.code, spot, width: 0, block: 0, message, help });
+    }
     if motions.kind == Kind::Gcode {
         let check = RefCell::new(&mut check);
         let next = || next_of(motions, &mut check.borrow_mut());
@@ -138,7 +152,7 @@ fn next_of(motions: &mut Motions, check: &mut Check) -> Option<Motion> {
 }
 
 fn rendered(finding: &Finding, motions: &mut Motions) -> String {
-    let place = motions.place(finding.spot, finding.width);
+    let place = motions.places.place(finding.spot, finding.width);
     // Without a place in a text the block says where it is.
     let message = match (&place, finding.block) {
         (None, 1..) => format!("block {}: {}", finding.block, finding.message),
@@ -151,7 +165,7 @@ fn rendered(finding: &Finding, motions: &mut Motions) -> String {
     let word = format!("{}[{}]:", finding.severity.name(), finding.code);
     let mut failure = Failure::new(exit, message).called(word);
     if let Some(place) = place {
-        failure = failure.at(&motions.name, place);
+        failure = failure.at(&motions.places.name, place);
     }
     if !finding.help.is_empty() {
         failure = failure.help(finding.help.clone());

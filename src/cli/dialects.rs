@@ -6,9 +6,12 @@ use super::failure::{Exit, Failure};
 use crate::formats::gcode::Dialect;
 use crate::formats::gcode::dialect::BUILT_IN;
 
-/// The dialect of a name; the generic one when none is named.
-pub(super) fn load(name: Option<&str>) -> Result<Dialect, Failure> {
-    let name = name.unwrap_or("generic");
+/// The dialect of a name. When none is named it is the generic one, and what is done in it is told.
+pub(super) fn load(name: Option<&str>, done: &str) -> Result<Dialect, Failure> {
+    let name = name.unwrap_or_else(|| {
+        say!("G-code is {done} in the dialect generic, for want of another");
+        "generic"
+    });
     if let Some(dialect) = Dialect::named(name) {
         return dialect.map_err(|error| Failure::keys(Exit::Ours, name, error));
     }

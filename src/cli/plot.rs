@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
@@ -35,8 +36,6 @@ pub(super) struct Options {
     #[arg(short, long, value_name = "OUT.svg|OUT.png")]
     output: PathBuf,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
     registers: Registers,
     /// The wire's diameter; 0 draws no wire [default: 0.18]
     #[arg(long, value_name = "MM", value_parser = diameter)]
@@ -56,6 +55,8 @@ pub(super) struct Options {
     /// Print what was drawn as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 /// What pictures can be written.
@@ -68,7 +69,8 @@ enum Picture {
 /// The wire that is drawn when none is named: molybdenum of 0.18 mm is what reciprocating machines commonly run.
 const WIRE_MM: f64 = 0.18;
 
-const PIXELS: u32 = 2400;
+/// How wide a PNG is unless it is said.
+pub(super) const PIXELS: u32 = 2400;
 
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let picture = picture_of(&options.output)?;
@@ -80,14 +82,18 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let model = Model::ALL.into_iter().find(|model| Some(model.name()) == named).unwrap_or(Model::Rotated);
     let simulated = (!options.no_simulation).then_some(model);
     let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, model)?;
+    if let Err(fault) = drawing::tell(&motions.places.name, motions.drawn.as_ref()) {
+        // A drawing that cannot be cut as it is can be looked at.
+        say!("{}", fault.render().trim_end());
+    }
     let wire = options.wire.or_else(|| kerf(&motions)).unwrap_or_else(|| {
         say!("the wire's diameter is not given: {WIRE_MM} mm is drawn (--wire MM)");
         WIRE_MM
     });
     let mut plot = Plot::new(What {
-        title: Path::new(&motions.name)
+        title: Path::new(&motions.places.name)
             .file_name()
-            .map_or_else(|| motions.name.clone(), |name| name.to_string_lossy().into_owned()),
+            .map_or_else(|| motions.places.name.clone(), |name| name.to_string_lossy().into_owned()),
         wire: (wire > 0.0).then_some(wire),
         numbers: options.numbers,
         simulated,
@@ -95,8 +101,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let blocks = draw(&mut motions, &mut plot, &options.registers)?;
     let plotted = plot.finish();
     if plotted.extent.is_none() {
-        return Err(Failure::new(Exit::Program, format!("{} moves nothing", motions.name))
-            .help("check that this is the program that was meant"));
+        return Err(moves_nothing(&motions.places.name));
     }
     let bytes = match picture {
         Picture::Svg => plotted.picture.to_svg().into_bytes(),
@@ -115,12 +120,17 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     print(account(&plotted, blocks, simulated).as_bytes())
 }
 
+pub(super) fn moves_nothing(name: &str) -> Failure {
+    Failure::new(Exit::Program, format!("{name} moves nothing"))
+        .help("check that this is the program that was meant")
+}
+
 /// Draws every motion; returns how many blocks there are.
 fn draw(motions: &mut Motions, plot: &mut Plot, registers: &Registers) -> Result<u64, Failure> {
     let mut blocks = 0;
     if motions.kind != Kind::Gcode {
         while let Some(motion) = motions.next() {
-            let motion = motion.map_err(|error| Failure::read(&motions.name, error))?;
+            let motion = motion.map_err(|error| Failure::read(&motions.places.name, error))?;
             blocks = motion.block;
             plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
                 let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
@@ -141,7 +151,7 @@ fn draw(motions: &mut Motions, plot: &mut Plot, registers: &Registers) -> Result
             Some(motion)
         }
         Err(error) => {
-            failed = Some(Failure::read(&motions.name, error));
+            failed = Some(Failure::read(&motions.places.name, error));
             None
         }
     };

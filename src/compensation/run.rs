@@ -1,9 +1,11 @@
 //! One compensated run: the lead-in, the moves of a contour, and what the program says between them.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::ops::Range;
 
-use super::{CompensationError, Warning, local};
-use crate::geometry::offset::{Corners, Impossible, Origin, offset};
+use super::{CompensationError, Fate, Warning, local};
+use crate::geometry::offset::{Corners, Impossible, Origin, Unreached, offset};
 use crate::geometry::{Element, Path, Point};
 use crate::motion::{Act, Motion};
 use crate::place::Spot;
@@ -77,7 +79,10 @@ impl Run {
         };
         let Beside { ways, warnings } = match self.as_a_whole(&path, left, corners)? {
             Some(whole) => whole,
-            None => Beside { ways: self.corner_by_corner(left, corners)?, warnings: Vec::new() },
+            None => {
+                let ways = self.corner_by_corner(left, corners)?;
+                Beside { ways, warnings: self.cut_into(&path, left)? }
+            }
         };
         let (Some(first), Some(last)) = (ways.first(), ways.last()) else {
             return Err(at_switch("nothing is left of the contour", "take a thinner wire"));
@@ -144,11 +149,53 @@ impl Run {
         while ways.last().is_some_and(|way| way.1 == Origin::Corner(self.elements.len() - 1)) {
             ways.pop();
         }
-        let warnings = found.unreached.iter().map(|&unreached| {
-            let motion = &self.moves[unreached.first];
-            Warning { block: motion.block, spot: motion.spot, unreached }
-        });
+        let warnings = found.unreached.into_iter().map(|unreached| self.warning(unreached, Fate::PassedBy));
         Ok(Some(Beside { ways, warnings: warnings.collect() }))
+    }
+
+    /// What a wire led corner by corner cuts into, because it lies farther along than the next corner.
+    ///
+    /// In an outline that the run goes round once that is certain, and refused. In a run that never comes back to where
+    /// it was, it may be a lead in the waste, and is told.
+    fn cut_into(&self, path: &Path, left: f64) -> Result<Vec<Warning>, CompensationError> {
+        let Some(outline) = self.outline() else {
+            // What crosses itself is not judged here.
+            let Ok(found) = offset(path, left, Corners::Round) else { return Ok(Vec::new()) };
+            let missed = found.unreached.into_iter();
+            return Ok(missed.map(|unreached| self.warning(unreached, Fate::CutInto)).collect());
+        };
+        let found = Path::new(self.elements[outline.clone()].to_vec())
+            .and_then(|path| offset(&path, left, Corners::Round).ok());
+        let Some(missed) = found.and_then(|found| found.unreached.into_iter().next()) else {
+            return Ok(Vec::new());
+        };
+        let message = format!(
+            "the wire cannot enter the contour here; an offset of at most {:.4} mm would",
+            missed.largest
+        );
+        Err(self.fault(outline.start + missed.first, message, STRAIGHT))
+    }
+
+    /// The most elements, but not all, that come back to where they began.
+    fn outline(&self) -> Option<Range<usize>> {
+        // Adding zero makes one of its two signs.
+        let key = |at: Point| ((at.x + 0.0).to_bits(), (at.y + 0.0).to_bits());
+        let all = self.elements.len();
+        let mut seen = BTreeMap::from([(key(self.elements.first()?.start()), 0)]);
+        let mut longest: Option<Range<usize>> = None;
+        for (n, element) in self.elements.iter().enumerate() {
+            let first = *seen.entry(key(element.end())).or_insert(n + 1);
+            let found = first..n + 1;
+            if found.len() < all && found.len() > longest.as_ref().map_or(0, ExactSizeIterator::len) {
+                longest = Some(found);
+            }
+        }
+        longest
+    }
+
+    fn warning(&self, unreached: Unreached, fate: Fate) -> Warning {
+        let motion = &self.moves[unreached.first];
+        Warning { block: motion.block, spot: motion.spot, unreached, fate }
     }
 
     fn corner_by_corner(
@@ -187,3 +234,5 @@ fn is_nothing(element: &Element) -> bool {
 }
 
 const THINNER: &str = "take a thinner wire or enlarge the corner";
+const STRAIGHT: &str =
+    "take a thinner wire, or lead in and out with one straight move each: then the place is passed by";

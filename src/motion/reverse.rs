@@ -5,56 +5,36 @@
 //! leads in. Settings made on the way (an offset put on, a cutting condition) hold for the same moves as before. The
 //! contours keep their order. One contour is held at a time.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 
-use super::runs::{ContourError, Layout, MEET_MM, Portion, Run, Runs};
+use super::runs::{ContourError, Contourwise, Layout, MEET_MM, Rework, Run};
 use super::{Act, Flag, Motion, Offset, Taper};
 use crate::geometry::{Element, Point};
 
-/// Reverses a program contour by contour.
-#[derive(Debug)]
-pub struct Reversed<I> {
-    runs: Runs<I>,
-    ready: VecDeque<Motion>,
+/// A program cut backwards, contour by contour.
+pub fn reversed<I, E>(motions: I) -> Contourwise<I, Reverse>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<ContourError>,
+{
+    Contourwise::new(motions, Reverse::default())
+}
+
+/// Turns contours round.
+#[derive(Debug, Default)]
+pub struct Reverse {
     settings: Settings,
 }
 
-impl<I, E> Reversed<I>
-where
-    I: Iterator<Item = Result<Motion, E>>,
-    E: Into<ContourError>,
-{
-    /// The program cut backwards.
-    pub fn new(motions: I) -> Self {
-        Self { runs: Runs::new(motions), ready: VecDeque::new(), settings: Settings::default() }
+impl Rework for Reverse {
+    fn run(&mut self, run: Run) -> Result<Vec<Motion>, ContourError> {
+        backwards(run, &mut self.settings)
     }
-}
 
-impl<I, E> Iterator for Reversed<I>
-where
-    I: Iterator<Item = Result<Motion, E>>,
-    E: Into<ContourError>,
-{
-    type Item = Result<Motion, ContourError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            if let Some(motion) = self.ready.pop_front() {
-                return Some(Ok(motion));
-            }
-            match self.runs.next()? {
-                Ok(Portion::Between(mut motion)) => {
-                    note(&mut self.settings, &motion);
-                    motion.act = other_side(motion.act);
-                    return Some(Ok(motion));
-                }
-                Ok(Portion::Run(run)) => match reversed(run, &mut self.settings) {
-                    Ok(motions) => self.ready = motions.into(),
-                    Err(error) => return Some(Err(error)),
-                },
-                Err(error) => return Some(Err(error)),
-            }
-        }
+    fn between(&mut self, mut motion: Motion) -> Result<Motion, ContourError> {
+        note(&mut self.settings, &motion);
+        motion.act = other_side(motion.act);
+        Ok(motion)
     }
 }
 
@@ -94,7 +74,7 @@ struct Cut {
 }
 
 /// A run cut backwards.
-fn reversed(run: Run, settings: &mut Settings) -> Result<Vec<Motion>, ContourError> {
+fn backwards(run: Run, settings: &mut Settings) -> Result<Vec<Motion>, ContourError> {
     let layout = run.layout();
     if let (false, Some((first, _))) = (layout.closed, run.cuts().next()) {
         return Err(ContourError::at(
@@ -288,7 +268,7 @@ mod tests {
     }
 
     fn reverse(motions: Vec<Motion>) -> Result<Vec<Motion>, ContourError> {
-        Reversed::new(motions.into_iter().map(Ok::<_, ContourError>)).collect()
+        reversed(motions.into_iter().map(Ok::<_, ContourError>)).collect()
     }
 
     /// What is done, briefly.

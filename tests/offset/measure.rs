@@ -4,7 +4,12 @@ use dripfeed::geometry::{Element, Path, Point, Sense};
 
 /// The distance of a point from a way, by the formula for a segment and for an arc.
 pub(crate) fn distance(path: &Path, point: Point) -> f64 {
-    path.elements().iter().map(|element| distance_from_element(element, point)).fold(f64::INFINITY, f64::min)
+    distance_from(path.elements(), point)
+}
+
+/// The distance of a point from any of some elements.
+pub(crate) fn distance_from(elements: &[Element], point: Point) -> f64 {
+    elements.iter().map(|element| distance_from_element(element, point)).fold(f64::INFINITY, f64::min)
 }
 
 fn distance_from_element(element: &Element, point: Point) -> f64 {

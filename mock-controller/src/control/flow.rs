@@ -7,6 +7,7 @@
 use std::time::Duration;
 
 use super::Controller;
+use super::plan::Plan;
 use super::settings::Start;
 use crate::line::back::{Meaning, Outgoing};
 use crate::line::fault::FaultKind;
@@ -185,6 +186,7 @@ impl<O: Observer> Controller<O> {
         self.queue.clear();
         self.queued_characters = 0;
         self.reader.reset(&mut self.text);
+        self.plan = Plan::new(&self.settings, self.position_um());
         self.flow.deaf = true;
         self.flow.held = false;
         self.flow.go_at = None;

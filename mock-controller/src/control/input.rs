@@ -3,6 +3,7 @@
 use super::Controller;
 use super::cutter::Item;
 use super::reader::Read;
+use crate::dialect::Dialect;
 use crate::line::fault::FaultKind;
 use crate::line::forward::Mark;
 use crate::line::pace::Pace;
@@ -72,9 +73,13 @@ impl<O: Observer> Controller<O> {
             return;
         }
         let read = self.reader.push(c, &mut self.text, &mut self.observer);
+        if self.reader.take_pause() && self.settings.dialect == Dialect::FourB {
+            self.enqueue(Item::Pause, 0);
+        }
         let item = match read {
             Read::Nothing => return self.filled(),
             Read::Block(block) => Item::Block(block),
+            Read::Line(line) => Item::Line(line),
             Read::End => Item::End,
             Read::Malformed(found) => Item::Malformed(found),
         };
@@ -83,6 +88,9 @@ impl<O: Observer> Controller<O> {
         }
         let characters = self.reader.take_characters();
         self.enqueue(item, characters);
+        if self.reader.take_end() {
+            self.enqueue(Item::End, 0);
+        }
         self.filled();
         self.take_up();
     }

@@ -19,7 +19,9 @@
 
 use super::settings::{LabelSkip, Torn};
 use super::text::Text;
-use crate::dialect::three_b::{Assembly, Block, Step};
+use crate::dialect::Assembly;
+use crate::dialect::four_b::{FourBlock, Step};
+use crate::dialect::gcode::Line;
 use crate::observer::Observer;
 
 pub(crate) struct Reader {
@@ -38,6 +40,8 @@ pub(crate) struct Reader {
     torn: u64,
     skipped: u64,
     after_end: bool,
+    /// A stop word D has been read since this was last asked.
+    paused: bool,
 }
 
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -63,7 +67,9 @@ struct Place {
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub(crate) enum Read {
     Nothing,
-    Block(Block),
+    Block(FourBlock),
+    /// In a dialect of lines.
+    Line(Line),
     /// The program's end.
     End,
     /// What was found, and where.
@@ -71,11 +77,11 @@ pub(crate) enum Read {
 }
 
 impl Reader {
-    pub(crate) fn new(label_skip: LabelSkip) -> Self {
+    pub(crate) fn new(assembly: Assembly, label_skip: LabelSkip) -> Self {
         Reader {
             label_skip,
             state: if label_skip == LabelSkip::Off { State::Between } else { State::Label },
-            assembly: Assembly::default(),
+            assembly,
             pending: Vec::new(),
             characters: 0,
             word: Vec::new(),
@@ -85,6 +91,7 @@ impl Reader {
             torn: 0,
             skipped: 0,
             after_end: false,
+            paused: false,
         }
     }
 
@@ -113,6 +120,11 @@ impl Reader {
         self.after_end
     }
 
+    /// Whether a stop word D has been passed since this was last asked.
+    pub(crate) fn take_pause(&mut self) -> bool {
+        std::mem::take(&mut self.paused)
+    }
+
     /// The link has closed: an unfinished block is dropped or kept.
     pub(crate) fn link_closed(&mut self, torn: Torn, text: &mut Text) {
         self.blocks_on_link = 0;
@@ -138,7 +150,7 @@ impl Reader {
     }
 
     fn clear(&mut self, text: &mut Text) {
-        self.assembly = Assembly::default();
+        self.assembly.clear();
         self.pending.clear();
         self.characters = 0;
         self.begin_label(text);
@@ -178,8 +190,13 @@ impl Reader {
             State::Block { kept } => self.block(c, kept, text, observer),
             State::Comment { until } => {
                 self.pending.push(c);
-                if c == until || c == b'\n' {
+                // It is read past and takes no room.
+                self.characters = self.characters.saturating_sub(1);
+                let ends = c == until || c == b'\n';
+                if ends || self.pending.len() >= PIECE {
                     self.accept(text, observer);
+                }
+                if ends {
                     self.state = State::Between;
                 }
                 Read::Nothing
@@ -201,7 +218,8 @@ impl Reader {
                     self.state = State::Tail;
                     return self.end(text);
                 }
-                // A single D is a pause. It is passed.
+                // A single D is a pause. It is passed, but told.
+                self.paused = true;
                 self.accept(text, observer);
                 self.state = State::Between;
                 self.between(c, text, observer)
@@ -256,6 +274,7 @@ impl Reader {
             self.label_skip == LabelSkip::Auto && matches!(self.word.as_slice(), b"D" | b"DD" | b"E");
         if is_word {
             let pauses = self.word == b"D";
+            self.paused |= pauses;
             self.skipped = self.skipped.saturating_sub(self.word.len() as u64);
             self.pending.clone_from(&self.word);
             self.pending.push(b'\n');
@@ -269,7 +288,7 @@ impl Reader {
             self.state = State::Block { kept: false };
             return Read::Nothing;
         }
-        self.assembly = Assembly::default();
+        self.assembly.clear();
         self.skip_pending();
         self.state = State::Between;
         Read::Nothing
@@ -295,7 +314,11 @@ impl Reader {
         }
         self.pending.push(c);
         match c.to_ascii_uppercase() {
-            b'\n' => self.accept(text, observer),
+            b'\n' => {
+                self.accept(text, observer);
+                // Line ends in a row take the room of one.
+                self.characters = 1;
+            }
             space if space.is_ascii_whitespace() => {}
             b'D' => self.state = State::Stop,
             b'E' => {
@@ -303,8 +326,8 @@ impl Reader {
                 self.state = State::Tail;
                 return self.end(text);
             }
-            b';' => self.state = State::Comment { until: b'\n' },
-            b'(' => self.state = State::Comment { until: b')' },
+            b';' => self.comment(b'\n'),
+            b'(' => self.comment(b')'),
             _ => {
                 self.after_end = false;
                 self.state = State::Block { kept: false };
@@ -314,10 +337,15 @@ impl Reader {
         Read::Nothing
     }
 
+    fn comment(&mut self, until: u8) {
+        self.characters = self.characters.saturating_sub(1);
+        self.state = State::Comment { until };
+    }
+
     fn block(&mut self, c: u8, kept: bool, text: &mut Text, observer: &mut impl Observer) -> Read {
         if kept && c == b'%' {
             self.torn += 1;
-            self.assembly = Assembly::default();
+            self.assembly.clear();
             self.pending.clear();
             self.characters = 0;
             self.state = State::Percent { ends: false };
@@ -340,7 +368,7 @@ impl Reader {
         }
     }
 
-    fn block_complete(&mut self, block: Block, text: &mut Text, observer: &mut impl Observer) -> Read {
+    fn block_complete(&mut self, block: FourBlock, text: &mut Text, observer: &mut impl Observer) -> Read {
         self.accept(text, observer);
         self.blocks_in_program += 1;
         self.blocks_on_link += 1;
@@ -404,6 +432,9 @@ impl Reader {
         self.characters = keep;
     }
 }
+
+/// A comment is digested in pieces: it may be of any length.
+const PIECE: usize = 4096;
 
 const DC2: u8 = 0x12;
 const DC4: u8 = 0x14;

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
+use super::plan::gcode::GcodeSettings;
+use crate::dialect::Dialect;
 use crate::interpolator::Model;
 use crate::line::fault::FaultKind;
 use crate::line::pace::{Framing, Pace};
@@ -13,6 +15,16 @@ use crate::line::pace::{Framing, Pace};
 pub struct Settings {
     /// How long a character takes, in both directions. Default: 9600 baud, 7E2.
     pub pace: Pace,
+    /// What the programs are written in. Default: 3B.
+    pub dialect: Dialect,
+    /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). G-code: what every `D` but
+    /// `D0` stands for, not negative; the side is G41's and G42's. Default 0; with 3B it must be 0, the offset is in the
+    /// numbers.
+    pub wire_offset_um: f64,
+    /// The taper keyed in, 4B only. Default: none, the wire is vertical.
+    pub taper: Option<Taper>,
+    /// How G-code is read.
+    pub gcode: GcodeSettings,
     /// The interpolator's model. Default: `Rotated`; unverified for any control.
     pub interpolator: Model,
     /// The input buffer, characters. Default 256 (a guess; no maker's number is public).
@@ -48,6 +60,23 @@ pub struct Settings {
     pub seed: u64,
     /// When the shell leaves; the control itself does not look at it. Default: when told to stop.
     pub until: Until,
+}
+
+/// A taper as it is keyed in. The lead-in's flag declares its sense.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taper {
+    /// α, degrees, from the vertical.
+    pub degrees: f64,
+    /// H2, from the plane of the program to the upper guide, µm. The paper's is 100 mm.
+    pub height_um: f64,
+}
+
+impl Taper {
+    /// A = H2 · tan α, µm (domain/2, "The 4B block").
+    #[must_use]
+    pub fn shift_um(&self) -> f64 {
+        self.height_um * libm::tan(self.degrees.to_radians())
+    }
 }
 
 /// What becomes of an unfinished block when the link closes.
@@ -97,6 +126,10 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             pace: Pace::Paced { baud: 9600, framing: Framing::SEVEN_EVEN_TWO },
+            dialect: Dialect::ThreeB,
+            wire_offset_um: 0.0,
+            taper: None,
+            gcode: GcodeSettings::default(),
             interpolator: Model::Rotated,
             buffer_bytes: 256,
             xoff_at: 192,
@@ -155,6 +188,25 @@ impl Settings {
         if self.pace == Pace::Unpaced && self.cutting_time != 0.0 {
             return Err(SettingsError::CuttingTimeUnpaced);
         }
+        if !(-OFFSET_MAX_UM..=OFFSET_MAX_UM).contains(&self.wire_offset_um) {
+            return Err(SettingsError::WireOffset(self.wire_offset_um));
+        }
+        if self.dialect == Dialect::ThreeB && self.wire_offset_um != 0.0 {
+            return Err(SettingsError::WireOffsetInNumbers);
+        }
+        if self.dialect == Dialect::Gcode && self.wire_offset_um < 0.0 {
+            return Err(SettingsError::NegativeOffset(self.wire_offset_um));
+        }
+        if let Some(taper) = self.taper {
+            if self.dialect != Dialect::FourB {
+                return Err(SettingsError::TaperDialect);
+            }
+            let is_right = (0.0..=TAPER_MAX_DEGREES).contains(&taper.degrees)
+                && (0.0..=HEIGHT_MAX_UM).contains(&taper.height_um);
+            if !is_right {
+                return Err(SettingsError::Taper(taper));
+            }
+        }
         if self.fifo_bytes == 0 {
             return Err(SettingsError::NoFifo);
         }
@@ -189,6 +241,16 @@ pub enum SettingsError {
     CuttingTime(f64),
     /// A multiple of no time at all.
     CuttingTimeUnpaced,
+    /// Not an offset between −10 and 10 mm.
+    WireOffset(f64),
+    /// 3B describes the path of the wire's centre; the control holds no offset.
+    WireOffsetInNumbers,
+    /// In G-code the side is told by G41 and G42, not by a sign.
+    NegativeOffset(f64),
+    /// An angle not between 0 and 45°, or a height not between 0 and 1000 mm.
+    Taper(Taper),
+    /// Only 4B knows a taper that is keyed in.
+    TaperDialect,
     /// No room for a single character.
     NoFifo,
     /// Not a probability.
@@ -221,6 +283,23 @@ impl fmt::Display for SettingsError {
                     "an unpaced line has no character time of which the cutting time could be a multiple"
                 )
             }
+            SettingsError::WireOffset(offset_um) => {
+                write!(f, "a wire offset of {} mm is not between -10 and 10 mm", offset_um / 1000.0)
+            }
+            SettingsError::WireOffsetInNumbers => {
+                write!(f, "3B programs hold the wire offset in their numbers: the control has none")
+            }
+            SettingsError::NegativeOffset(offset_um) => write!(
+                f,
+                "a wire offset of {} mm is negative: in G-code G41 and G42 tell the side",
+                offset_um / 1000.0
+            ),
+            SettingsError::Taper(Taper { degrees, height_um }) => write!(
+                f,
+                "a taper of {degrees}° over {} mm is not between 0 and 45°, 0 and 1000 mm",
+                height_um / 1000.0
+            ),
+            SettingsError::TaperDialect => write!(f, "a taper is keyed in for 4B programs only"),
             SettingsError::NoFifo => write!(f, "a driver FIFO of 0 takes nothing"),
             SettingsError::Rate { kind, rate } => {
                 write!(f, "fault {kind}: rate {rate} is not between 0 and 1")
@@ -230,3 +309,10 @@ impl fmt::Display for SettingsError {
 }
 
 impl std::error::Error for SettingsError {}
+
+/// Guesses, beyond any machine.
+const TAPER_MAX_DEGREES: f64 = 45.0;
+const HEIGHT_MAX_UM: f64 = 1e6;
+
+/// A guess: no wire is thicker.
+const OFFSET_MAX_UM: f64 = 10_000.0;

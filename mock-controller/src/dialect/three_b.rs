@@ -55,7 +55,7 @@ impl Quadrant {
         }
     }
 
-    fn from_digit(digit: u8) -> Option<Quadrant> {
+    pub(super) fn from_digit(digit: u8) -> Option<Quadrant> {
         match digit {
             b'1' => Some(Quadrant::First),
             b'2' => Some(Quadrant::Second),

@@ -15,6 +15,9 @@ use crate::report::Report;
 #[derive(Default)]
 pub struct Files {
     trace: Option<BufWriter<File>>,
+    /// Where the upper guide stands, if the trace tells of it.
+    upper_um: Option<[i64; 2]>,
+    has_header: bool,
     save: Option<BufWriter<File>>,
     picture: Option<(PathBuf, Picture)>,
     error: Option<io::Error>,
@@ -28,12 +31,26 @@ impl Files {
     /// What the system says, with the path.
     pub fn create(trace: Option<&Path>, save: Option<&Path>, picture: Option<&Path>) -> io::Result<Self> {
         let create = |path: &Path| File::create(path).map(BufWriter::new).map_err(|error| at(path, &error));
-        let mut trace = trace.map(create).transpose()?;
-        if let Some(file) = &mut trace {
-            writeln!(file, "t_s,block,x_um,y_um")?;
-        }
+        let trace = trace.map(create).transpose()?;
         let picture = picture.map(|path| (path.to_owned(), Picture::default()));
-        Ok(Files { trace, save: save.map(create).transpose()?, picture, error: None })
+        let save = save.map(create).transpose()?;
+        Ok(Files { trace, save, picture, ..Files::default() })
+    }
+
+    /// The trace tells of the upper guide too: `t_s,block,x_um,y_um,u_um,v_um`, a row a pulse in the plane of the program.
+    #[must_use]
+    pub fn with_upper(self) -> Self {
+        Files { upper_um: Some([0, 0]), ..self }
+    }
+
+    fn header(&mut self) {
+        if let Some(file) = &mut self.trace
+            && !std::mem::replace(&mut self.has_header, true)
+        {
+            let upper = if self.upper_um.is_some() { ",u_um,v_um" } else { "" };
+            let outcome = writeln!(file, "t_s,block,x_um,y_um{upper}");
+            self.keep(outcome);
+        }
     }
 
     /// Hands what has been written on to the system.
@@ -42,6 +59,7 @@ impl Files {
     ///
     /// The first error any of the files had.
     pub fn flush(&mut self) -> io::Result<()> {
+        self.header();
         if let Some(error) = self.error.take() {
             return Err(error);
         }
@@ -80,11 +98,21 @@ impl Observer for Files {
         if let Some((_, picture)) = &mut self.picture {
             picture.pulse(time, block, x_um, y_um);
         }
+        self.header();
         if let Some(file) = &mut self.trace {
             let (seconds, nanoseconds) = (time.as_secs(), time.subsec_nanos());
-            let outcome = writeln!(file, "{seconds}.{nanoseconds:09},{block},{x_um},{y_um}");
+            let outcome = match self.upper_um {
+                None => writeln!(file, "{seconds}.{nanoseconds:09},{block},{x_um},{y_um}"),
+                Some([u_um, v_um]) => {
+                    writeln!(file, "{seconds}.{nanoseconds:09},{block},{x_um},{y_um},{u_um},{v_um}")
+                }
+            };
             self.keep(outcome);
         }
+    }
+
+    fn upper_pulse(&mut self, _time: Duration, _block: u64, u_um: i64, v_um: i64) {
+        self.upper_um = Some([u_um, v_um]);
     }
 
     fn block_end(&mut self, end: &BlockEnd) {

@@ -3,9 +3,16 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests, too, fail by panicking")]
 
 mod arcs;
+mod beside;
 mod ends;
 mod faults;
 mod flow;
+mod four_b;
+mod gcode;
 mod lines;
+mod quiet;
 mod sender;
+mod taper;
 mod torn;
+mod watch;
+mod writer;

@@ -149,3 +149,91 @@ fn the_library_stops_when_told_and_refuses_settings_that_contradict_each_other()
     let error = serve_tcp(listener(), wrong, mock_controller::Unobserved, stop).unwrap_err();
     assert_eq!(error.kind(), std::io::ErrorKind::InvalidInput);
 }
+
+#[test]
+fn a_4b_program_is_cut_beside_its_outline_by_the_offset_on_the_command_line() {
+    for (offset, pulses) in [("0.1", 51_000), ("-0.07", 49_300)] {
+        let words =
+            ["--tcp", "127.0.0.1:0", "--once", "--unpaced", "--dialect", "4b", "--wire-offset", offset];
+        let mut mock = Mock::start(&words);
+        let mut stream = connect(&mock.ready);
+        assert_eq!(hear(&mut stream), 0x11);
+        let program = "%\nB5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nB5000BB5000GXL3\nDD\n%\n";
+        stream.write_all(program.as_bytes()).unwrap();
+        assert_eq!(hear(&mut stream), 0x13);
+        drop(stream);
+        let (code, report) = mock.ended();
+        assert_eq!((code, &report["pulses"], &report["blocks"]), (0, &pulses.into(), &3.into()), "{report}");
+    }
+}
+
+#[test]
+fn a_machines_file_stands_for_the_options_it_holds() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), "# a die\ndialect = \"4b\"\nwire-offset = -0.2\nbaud = 4800\nonce = true\n")
+        .unwrap();
+    let words = ["--tcp", "127.0.0.1:0", "--machine", file.path().to_str().unwrap(), "--unpaced"];
+    let mut mock = Mock::start(&words);
+    let mut stream = connect(&mock.ready);
+    assert_eq!(hear(&mut stream), 0x11);
+    stream.write_all(b"%\nB5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nDD\n").unwrap();
+    assert_eq!(hear(&mut stream), 0x13);
+    drop(stream);
+    let (code, report) = mock.ended();
+    assert_eq!((code, &report["pulses"]), (0, &(9 * 4800).into()), "{report}");
+}
+
+#[test]
+fn with_a_taper_the_report_and_the_trace_tell_of_the_upper_guide() {
+    let mut words =
+        vec!["--tcp", "127.0.0.1:0", "--once", "--unpaced", "--dialect", "4b", "--trace", "DIR/t.csv"];
+    words.extend(["--wire-offset", "-0.1", "--taper", "1", "--taper-height", "10"]);
+    let mut mock = Mock::start(&words);
+    let mut stream = connect(&mock.ready);
+    assert_eq!(hear(&mut stream), 0x11);
+    stream.write_all(b"%\nB5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nDD\n%\n").unwrap();
+    assert_eq!(hear(&mut stream), 0x13);
+    drop(stream);
+    let (code, report) = mock.ended();
+    // A = 10 mm times the tangent of 1 degree, 0.1746 mm.
+    assert_eq!((code, &report["end_um"]), (0, &serde_json::json!([4900, 0])));
+    assert_eq!(report["upper_end_um"], serde_json::json!([4725, 0]));
+    assert_eq!(report["upper_pulses"], 9 * 4725);
+    let trace = std::fs::read_to_string(mock.file("t.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = trace.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0], ["t_s", "block", "x_um", "y_um", "u_um", "v_um"]);
+    assert_eq!(rows.len(), 1 + 9 * 4900);
+    assert_eq!(rows[rows.len() - 1][1..], ["2", "4900", "0", "4725", "0"]);
+    assert_eq!(rows[2450][1..], ["1", "2450", "0", "2362", "0"]);
+}
+
+#[test]
+fn a_g_code_program_is_read_as_the_command_line_says() {
+    let mut words =
+        vec!["--tcp", "127.0.0.1:0", "--once", "--unpaced", "--dialect", "gcode", "--wire-offset", "0.1"];
+    words.extend([
+        "--arc-centre",
+        "absolute",
+        "--unit-without-point",
+        "um",
+        "--block-skip",
+        "--ignore-words",
+        "G54",
+    ]);
+    let mut mock = Mock::start(&words);
+    let mut stream = connect(&mock.ready);
+    assert_eq!(hear(&mut stream), 0x11);
+    let program = b"%\nG54 G01 X1000\n/X9000\nG41 X5.\nG02 X5. Y0 I10000 J0\nG40 G01 X1.\nM02\n%\n";
+    stream.write_all(program).unwrap();
+    assert_eq!(hear(&mut stream), 0x13);
+    drop(stream);
+    let (code, report) = mock.ended();
+    // The circle of R 5 about (10, 0), clockwise with the wire on its left: R 5.1, from (4.9, 0).
+    assert_eq!(
+        (code, &report["blocks"], &report["end_um"]),
+        (0, &4.into(), &serde_json::json!([1000, 0])),
+        "{report}"
+    );
+    assert_eq!(report["pulses"], 1000 + 3900 + 8 * 5100 + 3900);
+    assert_eq!(report["words_passed_over"], serde_json::json!({"G54": 1}));
+}

@@ -14,10 +14,17 @@ fn words_it_does_not_know_are_wrong_usage() {
         &["--tcp", "localhost:0", "--baud", "9600", "--unpaced"],
         &["--tcp", "localhost:0", "--baud", "0"],
         &["--tcp", "localhost:0", "--protocol", "xmodem"],
-        &["--tcp", "localhost:0", "--dialect", "4b"],
-        &["--tcp", "localhost:0", "--machine", "x.toml"],
+        &["--tcp", "localhost:0", "--dialect", "5b"],
         &["--tcp", "localhost:0", "--wire-offset", "0.1"],
+        &["--tcp", "localhost:0", "--dialect", "4b", "--wire-offset", "11"],
+        &["--tcp", "localhost:0", "--dialect", "4b", "--wire-offset", "wide"],
         &["--tcp", "localhost:0", "--taper", "1"],
+        &["--tcp", "localhost:0", "--dialect", "gcode", "--taper", "1"],
+        &["--tcp", "localhost:0", "--dialect", "gcode", "--wire-offset", "-0.1"],
+        &["--tcp", "localhost:0", "--dialect", "gcode", "--ignore-words", "C,5"],
+        &["--tcp", "localhost:0", "--dialect", "gcode", "--unit-without-point", "inch"],
+        &["--tcp", "localhost:0", "--dialect", "4b", "--taper", "46"],
+        &["--tcp", "localhost:0", "--dialect", "4b", "--taper-height", "80"],
         &["--tcp", "localhost:0", "--interpolator", "any"],
         &["--tcp", "localhost:0", "--framing", "7X2"],
         &["--tcp", "localhost:0", "--fault", "dsr-drop=0.1"],
@@ -44,6 +51,7 @@ fn what_cannot_be_opened_is_a_failure_that_names_it() {
     for (words, name) in [
         (&["--tcp", "256.0.0.1:0"][..], "256.0.0.1:0"),
         (&["--port", "/nowhere/tty"], "/nowhere/tty"),
+        (&["--tcp", "127.0.0.1:0", "--machine", "/nowhere/machine"], "/nowhere/machine"),
         (&["--pty", "/nowhere/link"], "/nowhere/link"),
         (&["--tcp", "127.0.0.1:0", "--trace", "/nowhere/trace"], "/nowhere/trace"),
         (&["--tcp", "127.0.0.1:0", "--status", "/nowhere/status"], "/nowhere/status"),
@@ -64,11 +72,19 @@ fn the_help_names_every_option() {
         "--pty",
         "--tcp",
         "--port",
+        "--machine",
         "--protocol",
         "--baud",
         "--unpaced",
         "--framing",
         "--dialect",
+        "--wire-offset",
+        "--taper",
+        "--taper-height",
+        "--arc-centre",
+        "--unit-without-point",
+        "--block-skip",
+        "--ignore-words",
         "--interpolator",
         "--buffer",
         "--xoff-at",
@@ -92,5 +108,24 @@ fn the_help_names_every_option() {
         "--save",
     ] {
         assert!(help.contains(option), "{option}");
+    }
+}
+
+#[test]
+fn a_machines_file_holds_options_and_a_wrong_line_is_wrong_usage() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("machine");
+    let path = file.to_str().unwrap();
+    for (text, found) in [
+        ("baud = 4800\nspeed = 3\n", "machine: line 2: unknown key"),
+        ("dialect = \"5b\"\n", "5b"),
+        ("wire-offset = 0.1\n", "3B programs hold the wire offset in their numbers"),
+        ("dialect = \"4b\"\nwire-offset = -0.1\nxon-at = 300\n", "xon-at 300 is not below"),
+    ] {
+        std::fs::write(&file, text).unwrap();
+        let output = run(&["--tcp", "localhost:0", "--machine", path]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{text}: {message}");
+        assert!(message.contains(found), "{text}: {message}");
     }
 }

@@ -31,12 +31,14 @@ impl Machine {
                 self.at[axis] = given.value;
             }
         }
+        // Heights alone place nothing.
+        let is_placed = lengths[X].is_some() || lengths[Y].is_some();
         for (axis, place) in [U, V].into_iter().enumerate() {
             if let Some(given) = lengths[place] {
                 self.lean[axis] = given.value;
             }
         }
-        self.is_placed = true;
+        self.is_placed |= is_placed;
         if self.dialect.heights {
             let mut text = b"G92".to_vec();
             for letter in [b'I', b'J'] {

@@ -1,0 +1,1 @@
+//! Plans on shapes one can reckon by hand.
