@@ -72,7 +72,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     };
     // Wrong arcs are judged here, and so is what stands behind them.
     let reading =
-        Reading { keeps_wrong_arcs: true, of_machine: profile.dialect.clone(), ..options.reading.clone() };
+        Reading { of_machine: profile.dialect.clone(), keeps_wrong_arcs: true, ..options.reading.clone() };
     let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {

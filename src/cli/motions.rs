@@ -36,12 +36,12 @@ pub(super) struct Reading {
     /// The control a G-code program is for: a built-in dialect or a dialect file [default: the machine's, else generic]
     #[arg(long, value_name = "NAME|FILE")]
     pub(super) dialect: Option<String>,
-    /// Whether arcs whose radii disagree are read as they are.
-    #[arg(skip)]
-    pub(super) keeps_wrong_arcs: bool,
     /// The dialect of the machine, where it is known and no other is named.
     #[arg(skip)]
     pub(super) of_machine: Option<String>,
+    /// Whether arcs whose radii disagree are read as they are.
+    #[arg(skip)]
+    pub(super) keeps_wrong_arcs: bool,
     #[command(flatten)]
     pub(super) drawing: drawing::OfDrawing,
     /// Where the wire enters a drawing.

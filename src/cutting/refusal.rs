@@ -163,7 +163,9 @@ pub enum Fault {
         pass: usize,
     },
     /// The wire does not come to an end of a tab, or not between it and the one before.
-    #[error("the wire of pass {pass} does not come to this end of a tab, or not between it and the one before")]
+    #[error(
+        "the wire of pass {pass} does not come to this end of a tab, or not between it and the one before"
+    )]
     TabLost {
         /// Which pass, from 1.
         pass: usize,
@@ -243,8 +245,12 @@ impl Refusal {
             Fault::TabTooShort { kerf, .. } => {
                 format!("make the tab longer than {:.3} mm by what is to hold the piece", 2.0 * kerf)
             }
-            Fault::EntryLost { .. } => "let the wire come in elsewhere, not in a slot that it does not enter".to_owned(),
-            Fault::TabLost { .. } => "move the tab away from the corner or slot that the wire does not enter".to_owned(),
+            Fault::EntryLost { .. } => {
+                "let the wire come in elsewhere, not in a slot that it does not enter".to_owned()
+            }
+            Fault::TabLost { .. } => {
+                "move the tab away from the corner or slot that the wire does not enter".to_owned()
+            }
             Fault::OvercutTooLong { .. } => "make the overcut shorter".to_owned(),
         }
     }

@@ -129,8 +129,8 @@ impl Cutter<'_> {
                     return Err(self.refusal(Some(at), fault));
                 }
             };
-            let track = Track::new(&self.course, &outline.path, left, &self.division.marks)
-                .map_err(|lost| {
+            let track =
+                Track::new(&self.course, &outline.path, left, &self.division.marks).map_err(|lost| {
                     let fault = match lost.mark {
                         0 => Fault::EntryLost { pass: n + 1 },
                         _ => Fault::TabLost { pass: n + 1 },

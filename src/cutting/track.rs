@@ -177,7 +177,8 @@ fn sees(contour: &Path, left: f64, from: Point, to: Point) -> bool {
     }
     let line = Element::Line { start: from + way * (SNAP / length), end: to };
     let waste_inside = (contour.area() > 0.0) == (left > 0.0);
-    contour.contains(line.at(0.5)) == waste_inside && nearest_within(&line, contour.elements(), CLEAR).is_none()
+    contour.contains(line.at(0.5)) == waste_inside
+        && nearest_within(&line, contour.elements(), CLEAR).is_none()
 }
 
 /// The point at a length along a closed contour and the direction of the contour behind it.
@@ -325,14 +326,23 @@ mod tests {
     fn a_place_in_a_slot_is_not_taken_for_one_behind_its_wall() {
         // A slot 0.4 mm wide and 6 mm deep, and a wall of 0.2 mm between it and the outside.
         let p = Point::new;
-        let nodes =
-            [p(0.0, 0.0), p(10.0, 0.0), p(10.0, 8.0), p(9.8, 8.0), p(9.8, 2.0), p(9.4, 2.0), p(9.4, 8.0), p(0.0, 8.0)];
+        let nodes = [
+            p(0.0, 0.0),
+            p(10.0, 0.0),
+            p(10.0, 8.0),
+            p(9.8, 8.0),
+            p(9.8, 2.0),
+            p(9.4, 2.0),
+            p(9.4, 8.0),
+            p(0.0, 8.0),
+        ];
         let line = |n: usize| Element::Line { start: nodes[n], end: nodes[(n + 1) % nodes.len()] };
         let contour = Path::new((0..nodes.len()).map(line).collect()).unwrap();
         let found = offset(&contour, -0.5, Corners::Round).unwrap();
         // 3 mm down the slot: the nearest path runs behind the wall, the one that is seen lies before the mouth.
         let mark = 10.0 + 8.0 + 0.2 + 3.0;
-        let track = Track::new(&contour, &found.outlines[0].path, -0.5, &[0.0, mark, contour.length()]).unwrap();
+        let track =
+            Track::new(&contour, &found.outlines[0].path, -0.5, &[0.0, mark, contour.length()]).unwrap();
         let (at, _) = track.leaving(track.place(Position { mark: 1, laps: 0, over: 0.0 }));
         assert!(at.y > 8.0 && at.x < 9.8, "{at}");
     }

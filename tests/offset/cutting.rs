@@ -328,7 +328,9 @@ fn once(
                 return Err(format!("{point} in a tab is cut before the stop"));
             }
             if !tab && held && runs[0].stops > 0 {
-                return Err(format!("{point} outside the tabs {tabs:?} at {along} of {whole} is cut only after a stop"));
+                return Err(format!(
+                    "{point} outside the tabs {tabs:?} at {along} of {whole} is cut only after a stop"
+                ));
             }
         }
     }

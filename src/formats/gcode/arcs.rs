@@ -155,7 +155,16 @@ mod tests {
 
     fn arc(end: Nanometres, offset: [Option<i64>; 2], radius: Option<i64>) -> Arc {
         let sense = Sense::CounterClockwise;
-        Arc { start: [10 * MM, 0], end, sense, offset, radius, shift: [0, 0], tolerance: 3000, is_kept: false }
+        Arc {
+            start: [10 * MM, 0],
+            end,
+            sense,
+            offset,
+            radius,
+            shift: [0, 0],
+            tolerance: 3000,
+            is_kept: false,
+        }
     }
 
     fn centre(arc: Arc, rule: ArcCentre) -> Point {
