@@ -3,7 +3,8 @@
 //! The first lines of a file in `tests/rejected` are, as remarks behind `;`, exactly what is found in it, in order:
 //! `severity[code] line:column message`. A line `with …` holds options. Of a program in which remarks would themselves be
 //! looked at they stand in a file beside it, `NAME.expected`. The file of the same name in `tests/accepted` is its twin
-//! with the fault mended: nothing is found in it.
+//! with the fault mended: nothing is found in it. What a person reads lies whole in `tests/golden/check`; it is rewritten
+//! only when `DRIPFEED_BLESS=1` is set.
 
 #[path = "gear/binary.rs"]
 #[expect(dead_code, reason = "the program is run in the directory of its input")]
@@ -84,6 +85,29 @@ fn each_rejected_program_is_told_what_its_first_lines_say() {
         let exit = if expected.iter().any(|finding| finding.starts_with("error")) { 3 } else { 8 };
         if found != expected || run.code != Some(exit) {
             different.push(format!("{}: exit {:?}\n  {}", file.display(), run.code, found.join("\n  ")));
+        }
+    }
+    assert!(different.is_empty(), "{}", different.join("\n"));
+}
+
+#[test]
+fn each_is_told_word_for_word_with_caret_and_help() {
+    let blessed = std::env::var("DRIPFEED_BLESS").is_ok_and(|value| value == "1");
+    let mut different = Vec::new();
+    for file in programs("rejected") {
+        let name = file.file_name().expect("a name").to_string_lossy().into_owned();
+        let golden = directory("golden").join("check").join(format!("{name}.txt"));
+        let run = check(&file, &[]);
+        let said = format!("{}--- standard output\n{}", run.stderr, run.stdout);
+        if blessed {
+            std::fs::write(&golden, &said).expect("a golden file can be written");
+        }
+        if std::fs::read_to_string(&golden).unwrap_or_default() != said {
+            different.push(format!("{name}:\n{said}"));
+        }
+        // A terminal breaks long sentences by itself; an excerpt must not lose its caret.
+        for line in said.lines().filter(|line| line.contains(['│', '·'])) {
+            assert!(line.chars().count() <= 80, "{name}: {line}");
         }
     }
     assert!(different.is_empty(), "{}", different.join("\n"));

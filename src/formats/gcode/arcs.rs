@@ -223,11 +223,11 @@ mod tests {
 
     #[test]
     fn a_wrong_arc_is_kept_on_request_unless_another_rule_for_centres_fits_it() {
-        let kept = |offset| Arc { is_kept: true, ..arc([-10 * MM, 5000], offset, None) };
-        let wrong = kept([Some(-10 * MM), Some(9000)]);
+        let kept = |offset| Arc { is_kept: true, ..arc([-10 * MM, 0], offset, None) };
+        let wrong = kept([Some(-10 * MM + 5000), Some(0)]);
         assert!(wrong.element(ArcCentre::FromStart).is_ok());
         assert!(Arc { is_kept: false, ..wrong }.element(ArcCentre::FromStart).is_err());
-        let absolute = Arc { end: [-10 * MM, 0], ..kept([Some(0), Some(0)]) };
+        let absolute = kept([Some(0), Some(5000)]);
         assert!(absolute.element(ArcCentre::FromStart).is_err());
     }
 }
