@@ -8,7 +8,7 @@
 //! - G40 G41 G42 put the wire beside the path (`beside`), by the offset that D or H tells (`offsets`).
 //! - M02 and M30 end the program. Subprograms stand behind it, O to M99, and are called by M98 P L: from the first call
 //!   on, nothing is cut until the program's end has been read.
-//! - G50 G51 G52 with T or A, and the words of the list, are passed over and counted. G17, N and O say nothing here.
+//! - G50 G51 G52, T and A with them or under G51 and G52, and the words of the list, are passed over and counted. G17, N and O say nothing here.
 //!   Every other word is the alarm `word`: nothing is ignored in silence.
 //!
 //! Not done: a taper (U, V, T), other planes and axes, work offsets, macros, G28 to G30, scaling, rotation.
@@ -66,6 +66,8 @@ struct Modal {
     offset: Option<Word>,
     /// Under G41 and G42: how far the wire is to be to the right of the path, µm.
     right: Option<f64>,
+    /// Under G51 and G52: the wire would be inclined.
+    tapers: bool,
 }
 
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -217,7 +219,10 @@ impl GcodePlan {
         let mut said = Said::default();
         let waits = call::says(line, 'G', 4);
         let compensates = call::says(line, 'G', 41) || call::says(line, 'G', 42);
-        let tapers = (50..=52).any(|code| call::says(line, 'G', code));
+        let inclines = call::says(line, 'G', 51) || call::says(line, 'G', 52);
+        let upright = call::says(line, 'G', 50);
+        let tapers = inclines || upright || self.modal.tapers;
+        self.modal.tapers = inclines || (self.modal.tapers && !upright);
         for word in &line.words {
             match word.letter {
                 'N' | 'O' => {}
