@@ -5,26 +5,26 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-//#[path = "convert/backwards.rs"]
-//mod backwards;
+#[path = "convert/backwards.rs"]
+mod backwards;
 #[path = "convert/control.rs"]
 mod control;
 #[path = "convert/dialects.rs"]
 mod dialects;
-//#[path = "convert/drawings.rs"]
-//mod drawings;
+#[path = "convert/drawings.rs"]
+mod drawings;
 #[path = "convert/four_b.rs"]
 mod four_b;
-//#[path = "convert/out.rs"]
-//mod out;
-//#[path = "convert/refusals.rs"]
-//mod refusals;
-//#[path = "convert/remarks.rs"]
-//mod remarks;
+#[path = "convert/out.rs"]
+mod out;
+#[path = "convert/refusals.rs"]
+mod refusals;
+#[path = "convert/remarks.rs"]
+mod remarks;
 #[path = "convert/shop.rs"]
 mod shop;
-//#[path = "convert/streams.rs"]
-//mod streams;
+#[path = "convert/streams.rs"]
+mod streams;
 #[path = "convert/three_b.rs"]
 mod three_b;
 #[path = "../mock-controller/tests/core/writer.rs"]

@@ -109,7 +109,9 @@ impl Reverse {
     /// A run cut backwards.
     fn backwards(&mut self, run: Run) -> Result<Vec<Motion>, ContourError> {
         let layout = run.layout();
-        if let (false, Some((first, _))) = (layout.closed, run.cuts().next()) {
+        // One straight move by itself is a way: between the pauses of a 3B program, or out behind a stop.
+        let is_way = matches!(run.cuts().collect::<Vec<_>>()[..], [(_, Element::Line { .. })]);
+        if let (false, false, Some((first, _))) = (layout.closed, is_way, run.cuts().next()) {
             return Err(ContourError::at(
                 &run.motions[first],
                 "a contour that does not come back to where it began",
@@ -133,7 +135,9 @@ impl Reverse {
                 _ => at_node.push(motion),
             }
         }
-        turn_round(&mut cuts, layout);
+        if !is_way {
+            turn_round(&mut cuts, layout);
+        }
         let mut motions = Vec::new();
         for cut in cuts {
             let wanted = if cut.backwards { with_path(cut.settings, cut.before) } else { cut.settings };
@@ -370,6 +374,16 @@ mod tests {
             ]
         );
         assert_eq!(reverse(backwards).unwrap(), motions);
+    }
+
+    #[test]
+    fn a_way_between_pauses_is_gone_as_it_is() {
+        let mut motions = half_disc();
+        motions.push(said(Act::Stop(Stop::Pause)));
+        motions.push(cut((0.0, 0.0), (30.0, 0.0), None));
+        motions.push(said(Act::Stop(Stop::Pause)));
+        let told = brief(&reverse(motions).unwrap());
+        assert_eq!(told[4..], ["Stop(Pause)", "30,0 None", "Stop(Pause)"]);
     }
 
     #[test]

@@ -175,7 +175,8 @@ fn what_the_registers_hold_is_the_offset_of_the_program() {
     let of = |um| SAMPLES[0].cut(um);
     let rough = of(300.0);
     let blocks_of_rough = rough.ends.iter().position(|end| *end == [0, 0]).unwrap();
-    assert_eq!(other.extents(), rough.extents());
+    let extents = [other.extents(), rough.extents()];
+    assert!(extents[0].iter().zip(extents[1]).all(|(a, b)| (a - b).abs() <= 1), "{extents:?}");
     let (last, skim) = (other.ends.len() - 2, of(100.0));
     assert_eq!(other.ends[last], skim.ends[skim.ends.len() - 2], "the last node of the skim");
     assert_eq!(other.ends[..blocks_of_rough / 2], rough.ends[..blocks_of_rough / 2]);

@@ -105,6 +105,7 @@ fn closed(turns: f64) -> impl Strategy<Value = String> {
     });
     proptest::collection::vec(prop_oneof![3 => line, 4 => arc, 1 => circle], 2..20)
         .prop_map(|blocks| closed_by_a_line(&blocks))
+        .prop_filter("a program that cuts", |text| text.lines().count() > 3)
 }
 
 /// The blocks on which all models agree, and a line back to where they began.
