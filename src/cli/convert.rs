@@ -177,7 +177,8 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     // A program that is right under any model ends its blocks where `rotated` does.
     let model = if let Aim::One(model) = aim { model } else { Model::Rotated };
     let mut writer = Made::of(to, options, aim)?;
-    let reading = Reading { starts: options.wire.start.clone(), ..options.reading.clone() };
+    let reading =
+        Reading { starts: options.wire.start.clone(), as_they_come: true, ..options.reading.clone() };
     let motions = Motions::open(&options.input, &reading, OfPart::Elements, model)?;
     drawing::tell(&motions.places.name, motions.drawn.as_ref())?;
     let mut places = motions.places()?;

@@ -2,10 +2,11 @@
 //!
 //! Motions come one at a time; only a drawing is held. A program can be read on behind something that cannot be read: at
 //! the next line, or behind the next block where blocks run together. What comes from standard input or a FIFO is put
-//! aside first, since places are shown by reading again, and a G-code program may call what stands behind its end.
+//! aside, since places are shown by reading again: first, where a program is read on behind an error, and G-code, which may
+//! call what stands behind its end; else block by block as it comes.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek as _, SeekFrom};
+use std::io::{self, BufReader, Read, Seek as _, SeekFrom, Write as _};
 use std::path::Path;
 
 use clap::Args;
@@ -47,6 +48,9 @@ pub(super) struct Reading {
     /// Where the wire enters a drawing.
     #[arg(skip)]
     pub(super) starts: Vec<Point>,
+    /// Whether blocks are read as they come, and not on behind what cannot be read.
+    #[arg(skip)]
+    pub(super) as_they_come: bool,
 }
 
 impl Reading {
@@ -158,6 +162,16 @@ impl Motions {
             Kind::ThreeB | Kind::FourB | Kind::Gcode => {
                 let failed = |error: io::Error| source::unreadable(word, &error);
                 let is_file = word != "-" && Path::new(word).is_file();
+                if !is_file && reading.as_they_come && kind != Kind::Gcode {
+                    let (copy, text) = Copied::open(word).map_err(failed)?;
+                    file = Some(copy);
+                    let text = Box::new(BufReader::with_capacity(BUFFER, text));
+                    let source = blocks(match kind {
+                        Kind::FourB => three_b::motions::Motions::of_four_b(text, model),
+                        _ => three_b::motions::Motions::of_three_b(text, model),
+                    });
+                    return Ok(Self { kind, places: Places { name: name_of(word), kind, file }, source, part, drawn });
+                }
                 let opened = if is_file { File::open(word) } else { put_aside(word) }.map_err(failed)?;
                 let text = opened.try_clone().map_err(failed)?;
                 file = Some(opened);
@@ -179,8 +193,7 @@ impl Motions {
                 }
             }
         };
-        let name = if word == "-" { "standard input".to_owned() } else { word.to_owned() };
-        Ok(Self { kind, places: Places { name, kind, file }, source, part, drawn })
+        Ok(Self { kind, places: Places { name: name_of(word), kind, file }, source, part, drawn })
     }
 
     /// The 3B block the last motion came from.
@@ -342,12 +355,49 @@ fn block_width(text: &[u8]) -> usize {
     block.windows(2).position(is_end).map_or_else(|| block.trim_ascii_end().len().max(1), |at| at + 2)
 }
 
-/// Copies what can be read only once into a file without a name.
-fn put_aside(word: &str) -> io::Result<File> {
+/// What a source is called in messages.
+fn name_of(word: &str) -> String {
+    if word == "-" { "standard input".to_owned() } else { word.to_owned() }
+}
+
+/// What can be read only once, copied aside as it is read, so that places in it can be shown.
+struct Copied {
+    source: Box<dyn Read>,
+    copy: File,
+}
+
+impl Copied {
+    /// The copy, and what fills it.
+    fn open(word: &str) -> io::Result<(File, Self)> {
+        let copy = aside()?;
+        let source: Box<dyn Read> =
+            if word == "-" { Box::new(io::stdin()) } else { Box::new(File::open(word)?) };
+        Ok((copy.try_clone()?, Self { source, copy }))
+    }
+}
+
+impl Read for Copied {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.source.read(buffer)?;
+        // Whoever shows a place moves the position, which is one for both.
+        self.copy.seek(SeekFrom::End(0))?;
+        self.copy.write_all(&buffer[..count])?;
+        Ok(count)
+    }
+}
+
+/// A file without a name.
+fn aside() -> io::Result<File> {
     let path = std::env::temp_dir().join(format!("dripfeed-{}.in", std::process::id()));
-    let mut file = File::options().read(true).write(true).create_new(true).open(&path)?;
+    let file = File::options().read(true).write(true).create_new(true).open(&path)?;
     // An open file stays readable without its name; where a system thinks otherwise it is left behind.
     let _ = std::fs::remove_file(&path);
+    Ok(file)
+}
+
+/// Copies what can be read only once into a file without a name.
+fn put_aside(word: &str) -> io::Result<File> {
+    let mut file = aside()?;
     if word == "-" {
         io::copy(&mut io::stdin().lock(), &mut file)?;
     } else {

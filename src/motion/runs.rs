@@ -236,12 +236,21 @@ pub trait Rework {
     /// When its shape does not allow it.
     fn run(&mut self, run: Run) -> Result<Vec<Motion>, ContourError>;
 
-    /// What becomes of something between runs.
+    /// What becomes of something between runs: itself as a rule, with something before it, or nothing yet.
     ///
     /// # Errors
     ///
     /// When it does not allow it.
-    fn between(&mut self, motion: Motion) -> Result<Motion, ContourError>;
+    fn between(&mut self, motion: Motion) -> Result<Between, ContourError>;
+}
+
+/// What becomes of something between runs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Between {
+    /// One motion.
+    One(Motion),
+    /// Any number of them.
+    Several(Vec<Motion>),
 }
 
 /// A program reworked contour by contour.
@@ -278,7 +287,11 @@ where
                 return Some(Ok(motion));
             }
             match self.runs.next()? {
-                Ok(Portion::Between(motion)) => return Some(self.rework.between(motion)),
+                Ok(Portion::Between(motion)) => match self.rework.between(motion) {
+                    Ok(Between::One(motion)) => return Some(Ok(motion)),
+                    Ok(Between::Several(motions)) => self.ready = motions.into(),
+                    Err(error) => return Some(Err(error)),
+                },
                 Ok(Portion::Run(run)) => match self.rework.run(run) {
                     Ok(motions) => self.ready = motions.into(),
                     Err(error) => return Some(Err(error)),

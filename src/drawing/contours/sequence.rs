@@ -65,7 +65,11 @@ pub(super) fn follow(
                         report.push(Finding::new(Severity::Warning, "gap-closed", message).at(at).line(line));
                     }
                     let last = chain.elements.len() - 1;
-                    chain.elements[last] = moved_end(chain.elements[last], begin);
+                    if is_circle(&chain.elements[last]) {
+                        elements[0] = moved_end(elements[0].reversed(), at).reversed();
+                    } else {
+                        chain.elements[last] = moved_end(chain.elements[last], begin);
+                    }
                 }
                 if chain.layer == layer && chain.travel == travel {
                     chain.elements.extend(elements);
@@ -85,7 +89,7 @@ pub(super) fn follow(
     }
     if let (Some(chain), Some(end)) = (chains.last_mut(), ends_at) {
         let last = chain.elements.len() - 1;
-        if (chain.elements[last].end() - end).norm() <= ROUNDED {
+        if (chain.elements[last].end() - end).norm() <= ROUNDED && !is_circle(&chain.elements[last]) {
             chain.elements[last] = moved_end(chain.elements[last], end);
         }
     }
@@ -93,11 +97,17 @@ pub(super) fn follow(
     for chain in &mut chains {
         let (first, last) = (chain.elements[0].start(), chain.elements.len() - 1);
         let end = chain.elements[last].end();
-        if end != first && (end - first).norm() <= ROUNDED && chain.elements.len() > 1 {
+        let is_off = end != first && (end - first).norm() <= ROUNDED;
+        if is_off && chain.elements.len() > 1 && !is_circle(&chain.elements[last]) {
             chain.elements[last] = moved_end(chain.elements[last], first);
         }
     }
     chains
+}
+
+/// Whether an element is a full circle: with its end moved it would be an arc of next to nothing, or of next to all.
+fn is_circle(element: &Element) -> bool {
+    matches!(element, Element::Arc { start, end, .. } if start == end)
 }
 
 /// The end of an arc whose radii differ by a rounding to the micron lies up to this beside the point meant, mm.

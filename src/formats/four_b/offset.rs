@@ -12,7 +12,7 @@
 
 use super::outline::{CORNER_HELP, Outlined, first_corner, side_of, size, told};
 use crate::geometry::{Element, Point, Vector};
-use crate::motion::runs::{ContourError, Contourwise, Rework, Run};
+use crate::motion::runs::{Between, ContourError, Contourwise, Rework, Run};
 use crate::motion::{Act, Flag, Motion, Side};
 
 /// What an operator keys into the control, mm.
@@ -72,7 +72,7 @@ impl Rework for Beside {
         }
         let parts = Outlined::of(&run);
         if parts.is_way() || keyed == Keyed::default() {
-            return run.motions.into_iter().map(|motion| self.between(motion)).collect();
+            return run.motions.into_iter().map(|motion| self.go_on(motion)).collect();
         }
         let mut ways = self.ways(&run, &parts)?.into_iter();
         let mut motions = Vec::with_capacity(run.motions.len());
@@ -96,19 +96,8 @@ impl Rework for Beside {
         Ok(motions)
     }
 
-    fn between(&mut self, mut motion: Motion) -> Result<Motion, ContourError> {
-        let place = motion.clone();
-        if let Act::Move { element, upper, flag, .. } = &mut motion.act {
-            *flag = None;
-            let (lower, to) = (*element, element.end());
-            let Some(wire) = self.standing.take().filter(|wire| *wire != Wire::upright(lower.start())) else {
-                return Ok(motion);
-            };
-            let Element::Line { .. } = lower else { return Err(ContourError::at(&place, CURVED, LEAD_HELP)) };
-            *element = Element::Line { start: wire.lower, end: to };
-            *upper = wire.upper.map(|start| Element::Line { start, end: to });
-        }
-        Ok(motion)
+    fn between(&mut self, motion: Motion) -> Result<Between, ContourError> {
+        self.go_on(motion).map(Between::One)
     }
 }
 
@@ -126,6 +115,22 @@ impl Wire {
 }
 
 impl Beside {
+    /// A motion that is beside no outline, from where the wire stands.
+    fn go_on(&mut self, mut motion: Motion) -> Result<Motion, ContourError> {
+        let place = motion.clone();
+        if let Act::Move { element, upper, flag, .. } = &mut motion.act {
+            *flag = None;
+            let (lower, to) = (*element, element.end());
+            let Some(wire) = self.standing.take().filter(|wire| *wire != Wire::upright(lower.start())) else {
+                return Ok(motion);
+            };
+            let Element::Line { .. } = lower else { return Err(ContourError::at(&place, CURVED, LEAD_HELP)) };
+            *element = Element::Line { start: wire.lower, end: to };
+            *upper = wire.upper.map(|start| Element::Line { start, end: to });
+        }
+        Ok(motion)
+    }
+
     /// The way of each move of a run that has a length.
     fn ways(&self, run: &Run, parts: &Outlined) -> Result<Vec<Way>, ContourError> {
         let motion = |cut: usize| &run.motions[parts.cuts[cut].0];
