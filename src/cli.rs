@@ -56,7 +56,7 @@ enum Command {
     #[cfg(feature = "demo")]
     Demo(demo::Options),
     Generate(generate::Options),
-    Convert(convert::Options),
+    Convert(Box<convert::Options>),
     Check(check::Options),
     Plot(plot::Options),
     Send(send::Options),

@@ -170,7 +170,13 @@ impl Motions {
                         Kind::FourB => three_b::motions::Motions::of_four_b(text, model),
                         _ => three_b::motions::Motions::of_three_b(text, model),
                     });
-                    return Ok(Self { kind, places: Places { name: name_of(word), kind, file }, source, part, drawn });
+                    return Ok(Self {
+                        kind,
+                        places: Places { name: name_of(word), kind, file },
+                        source,
+                        part,
+                        drawn,
+                    });
                 }
                 let opened = if is_file { File::open(word) } else { put_aside(word) }.map_err(failed)?;
                 let text = opened.try_clone().map_err(failed)?;
@@ -299,7 +305,8 @@ impl Text {
 impl Read for Text {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if self.at == self.line.len() {
-            (self.line.clear(), self.at = 0);
+            self.line.clear();
+            self.at = 0;
             while self.line.len() < buffer.len().min(BUFFER) {
                 match self.program.pull(&mut self.line).map_err(io::Error::other)? {
                     Some(_) => self.line.push(b'\n'),

@@ -143,8 +143,7 @@ impl Sample {
     /// A shop with the program in it, and the words that name it.
     fn shop(&self) -> (Shop, String) {
         let shop = Shop::with("in.nc", self.text());
-        let charmilles =
-            format!("{}/src/formats/gcode/dialects/charmilles.toml", env!("CARGO_MANIFEST_DIR"));
+        let charmilles = format!("{}/src/formats/gcode/dialects/charmilles.toml", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(charmilles).unwrap();
         shop.write("absolute.toml", text.replace("\"from-start\"", "\"absolute\""));
         (shop, format!("in.nc --dialect {}", self.dialect))
@@ -188,7 +187,10 @@ fn gcode_with_the_wires_path_in_it_needs_no_offset() {
         let (shop, words) = sample.shop();
         let text = shop.convert(&format!("{words} --to gcode --to-dialect generic --offset 0.1"));
         assert!(!text.contains("G41") && !text.contains("G42"), "{}\n{text}", sample.name);
-        let reading = GcodeSettings { ignored_words: "C,E,S,H,T,P,F,W,L,J,D,M03-M97,G38,G39,G54,G60,G61".parse().unwrap(), ..GcodeSettings::default() };
+        let reading = GcodeSettings {
+            ignored_words: "C,E,S,H,T,P,F,W,L,J,D,M03-M97,G38,G39,G54,G60,G61".parse().unwrap(),
+            ..GcodeSettings::default()
+        };
         let text: Vec<&str> = text.lines().filter(|line| !line.contains('=') && *line != "%").collect();
         let told = cut(Settings { gcode: reading, ..gcode(0.0) }, &text.join("\n"));
         assert_same_cut(&told, &sample.cut(100.0), 2, sample.name);
