@@ -106,7 +106,9 @@ mod tests {
         Motion { act, block: 1, spot: Spot::default() }
     }
 
-    fn ways(motions: Vec<Motion>) -> Vec<(Travel, (f64, f64), (f64, f64))> {
+    type Way = (Travel, (f64, f64), (f64, f64));
+
+    fn ways(motions: Vec<Motion>) -> Vec<Way> {
         let led = from_hole(motions.into_iter().map(Ok::<_, ()>), Point::new(5.0, 5.0));
         let way = |motion: Motion| match motion.act {
             Act::Move { travel, element, .. } => {
