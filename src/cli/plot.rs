@@ -256,7 +256,7 @@ fn account(plotted: &Plotted, blocks: u64, simulated: Option<Model>) -> String {
             deviation.block
         ));
     }
-    if plotted.thinned_um > 2.0 {
+    if plotted.thinned_um > 2.5 {
         text.push_str(&format!(
             "lines are drawn within {:.0} µm, to keep the picture small\n",
             plotted.thinned_um

@@ -171,7 +171,7 @@ pub(super) struct Thinned {
 const POINTS_MAX: usize = 30_000;
 
 /// Where thinning begins, µm: below what a picture shows.
-const FINEST_UM: f64 = 0.8;
+pub(super) const FINEST_UM: f64 = 0.8;
 
 impl Thinned {
     pub(super) fn new() -> Self {
