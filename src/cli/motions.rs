@@ -167,7 +167,13 @@ impl Motions {
                         Kind::FourB => three_b::motions::Motions::of_four_b(text, model),
                         _ => three_b::motions::Motions::of_three_b(text, model),
                     });
-                    return Ok(Self { kind, places: Places { name: name_of(word), kind, file }, source, part, drawn });
+                    return Ok(Self {
+                        kind,
+                        places: Places { name: name_of(word), kind, file },
+                        source,
+                        part,
+                        drawn,
+                    });
                 }
                 let opened = if is_file { File::open(word) } else { put_aside(word) }.map_err(failed)?;
                 let text = opened.try_clone().map_err(failed)?;

@@ -42,7 +42,13 @@ fn assert_ell(cut: &Cut, f: i64, what: &str) {
     near(over, 15_000 + f, &format!("{what}: below the notch"));
     let [_, beside, _, _] = cut.extents_where(|[_, y]| y > 20_000);
     near(beside, 10_000 + f, &format!("{what}: beside the notch"));
-    assert_round(cut, [15_000, 20_000], 5000 - f, |[x, y]| x > 10_600 && x < 14_400 && y > 15_600 && y < 19_400, what);
+    assert_round(
+        cut,
+        [15_000, 20_000],
+        5000 - f,
+        |[x, y]| x > 10_600 && x < 14_400 && y > 15_600 && y < 19_400,
+        what,
+    );
     assert_round(cut, [15_000, 10_000], 5000 + f, |[x, y]| x > 15_500 && y < 9500, what);
     assert_eq!(cut.end(), [0, 0], "{what}");
 }
@@ -110,7 +116,13 @@ fn sharp_corners_are_rounded_on_request_and_then_take_any_offset() {
             near(over, 13_000 + f, &format!("{what}: below the notch"));
             let [_, beside, _, _] = cut.extents_where(|[_, y]| y > 15_000);
             near(beside, 5000 + f, &format!("{what}: beside the notch"));
-            assert_round(&cut, [6000, 14_000], 1000 - f, |[x, y]| x > 5000 + f && x < 5900 && y > 13_000 + f && y < 13_900, &what);
+            assert_round(
+                &cut,
+                [6000, 14_000],
+                1000 - f,
+                |[x, y]| x > 5000 + f && x < 5900 && y > 13_000 + f && y < 13_900,
+                &what,
+            );
             assert_round(&cut, [14_000, 4000], 1000 + f, |[x, y]| x > 14_100 && y < 3900, &what);
             assert_eq!(cut.end(), [0, 0], "{what}");
         }
@@ -125,7 +137,12 @@ fn four_b_written_again_is_cut_the_same_under_any_offset() {
     for program in [die(), l, convert("in.3b", SHARP, "--to 4b --round-corners 1")] {
         let again = convert("in.4b", &program, "--to 4b");
         for f in [0.0, 59.0, -100.0] {
-            assert_same_cut(&cut(four_b(f), &again), &cut(four_b(f), &program), 3, &format!("F {f}\n{again}"));
+            assert_same_cut(
+                &cut(four_b(f), &again),
+                &cut(four_b(f), &program),
+                3,
+                &format!("F {f}\n{again}"),
+            );
         }
     }
 }

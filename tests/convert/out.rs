@@ -15,7 +15,9 @@ fn broken() -> String {
 #[test]
 fn a_file_appears_whole() {
     let shop = Shop::with("in.3b", SQUARE);
-    for (out, begins) in [("out.nc", "G21 G90\n"), ("out.dxf", "999\n"), ("out.svg", "<svg"), ("out.3b", "B"), ("out.png", "")] {
+    for (out, begins) in
+        [("out.nc", "G21 G90\n"), ("out.dxf", "999\n"), ("out.svg", "<svg"), ("out.3b", "B"), ("out.png", "")]
+    {
         let run = shop.run(&format!("convert in.3b -o {out}"));
         assert_eq!((run.code, run.stdout.as_str()), (Some(0), ""), "{}", run.stderr);
         if begins.is_empty() {

@@ -66,7 +66,19 @@ fn gcode_keeps_its_numbers_remarks_frame_and_words() {
     let lines: Vec<&str> = once.lines().collect();
     assert_eq!((lines.first(), lines.last()), (Some(&"%"), Some(&"%")), "{once}");
     for kept in [
-        "O0042", "PUNCH (7", "before the cut", "lead in", "S4", "M60", "F2.5", "G41 D1", "/N80 M01", "N60 ", "N70 ", "N110 M", "G04 X1.5",
+        "O0042",
+        "PUNCH (7",
+        "before the cut",
+        "lead in",
+        "S4",
+        "M60",
+        "F2.5",
+        "G41 D1",
+        "/N80 M01",
+        "N60 ",
+        "N70 ",
+        "N110 M",
+        "G04 X1.5",
         "G40",
     ] {
         assert!(once.contains(kept), "{kept}:\n{once}");
@@ -79,15 +91,26 @@ fn gcode_keeps_its_numbers_remarks_frame_and_words() {
     shop.write("once.nc", &once);
     assert_eq!(shop.convert("once.nc"), once);
     let numbered = shop.convert("in.nc --number-step 5");
-    assert!(numbered.contains("\nN5 ") && numbered.contains("\nN10 ") && !numbered.contains("N110"), "{numbered}");
+    assert!(
+        numbered.contains("\nN5 ") && numbered.contains("\nN10 ") && !numbered.contains("N110"),
+        "{numbered}"
+    );
 }
 
 #[test]
 fn the_dialect_for_want_of_another_is_told() {
     let shop = Shop::with("in.nc", GCODE);
     let run = shop.run("convert in.nc");
-    assert!(run.stderr.contains("G-code is read in the dialect generic, for want of another\n"), "{}", run.stderr);
-    assert!(run.stderr.contains("G-code is written in the dialect generic, for want of another\n"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("G-code is read in the dialect generic, for want of another\n"),
+        "{}",
+        run.stderr
+    );
+    assert!(
+        run.stderr.contains("G-code is written in the dialect generic, for want of another\n"),
+        "{}",
+        run.stderr
+    );
     let named = shop.run("convert in.nc --dialect fanuc");
     assert!(!named.stderr.contains("for want of another"), "{}", named.stderr);
 }
