@@ -13,6 +13,26 @@
 //! in it has a place that the wire cannot enter.
 //!
 //! Taper is passed on: it tilts the wire about the path and does not move it.
+//!
+//! ```
+//! use dripfeed::compensation::Compensated;
+//! use dripfeed::formats::gcode::{Dialect, Motions};
+//! use dripfeed::geometry::offset::Corners;
+//! use dripfeed::motion::{Act, Motion};
+//!
+//! let text = "G21 G90 G92 X0. Y0.\nG41 D1 G01 X5.\nG03 I-5. J0.\nG40 G01 X0.\nM02\n";
+//! let dialect = Dialect::named("generic").expect("a built-in dialect")?;
+//! let motions = Motions::new(text.as_bytes(), dialect);
+//! let mut wire = Compensated::new(motions, [(1, 0.1)].into(), Corners::Round);
+//! let made: Vec<Motion> = wire.by_ref().collect::<Result<_, _>>()?;
+//! let ends = made.iter().filter_map(|motion| match motion.act {
+//!     Act::Move { element, .. } => Some(element.end().x),
+//!     _ => None,
+//! });
+//! assert_eq!(ends.collect::<Vec<_>>(), [4.9, 4.9, 0.0]);
+//! assert!(wire.take_warnings().is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod local;
 pub mod put_on;
@@ -74,15 +94,12 @@ pub enum Fate {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Unreached { at, largest, .. } = self.unreached;
-        let what = match self.fate {
-            Fate::PassedBy => "the wire cannot enter the contour at",
-            Fate::CutInto => "the wire cuts into the contour at",
+        let (what, does) = match self.fate {
+            Fate::PassedBy => ("does not reach", "does"),
+            Fate::CutInto => ("cuts into", "does not"),
         };
-        let would = match self.fate {
-            Fate::PassedBy => "enter",
-            Fate::CutInto => "pass",
-        };
-        write!(f, "{what} X{:.4} Y{:.4}; an offset of at most {largest:.4} mm would {would}", at.x, at.y)
+        write!(f, "block {}: the wire {what} the contour at X{:.3} Y{:.3}; ", self.block, at.x, at.y)?;
+        write!(f, "the largest offset that {does} is {largest:.3} mm")
     }
 }
 
@@ -136,7 +153,7 @@ enum State {
     /// An offset is switched on; the move that leads in is awaited.
     Starting { on: On },
     /// A contour is collected.
-    Running { on: On, run: Run },
+    Running { on: On, run: Box<Run> },
 }
 
 /// An offset that is switched on.
@@ -182,7 +199,7 @@ where
             State::Off => match motion.act {
                 Act::Offset(said) => self.switched(said, &motion)?,
                 Act::Move { .. } => {
-                    let moved = self.from_where_it_stands(motion)?;
+                    let moved = self.begun_where_it_stands(motion)?;
                     self.ready.push_back(Ok(moved));
                 }
                 _ => self.ready.push_back(Ok(motion)),
@@ -194,8 +211,8 @@ where
                     self.ready.push_back(Ok(motion));
                 }
                 Act::Move { element: Element::Line { .. }, upper: None, .. } => {
-                    let lead_in = self.from_where_it_stands(motion)?;
-                    self.state = State::Running { on, run: Run::new(lead_in) };
+                    let lead_in = self.begun_where_it_stands(motion)?;
+                    self.state = State::Running { on, run: Box::new(Run::new(lead_in)) };
                 }
                 Act::Move { .. } => {
                     return Err(fault(
@@ -266,7 +283,7 @@ where
     }
 
     /// A move begun where the wire stands: it leads out of an offset, or is any other.
-    fn from_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, CompensationError> {
+    fn begun_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, CompensationError> {
         let Act::Move { element, upper, .. } = &mut motion.act else { return Ok(motion) };
         let is_empty = matches!(element, Element::Line { start, end } if start == end);
         match (self.standing, *element) {

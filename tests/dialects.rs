@@ -166,7 +166,7 @@ fn written(motions: &[Motion], dialect: &Dialect) -> Vec<u8> {
         writer.write(motion, &mut text).unwrap();
     }
     writer.finish(&mut text).unwrap();
-    assert!(writer.losses().is_empty(), "{:?}", writer.losses());
+    assert!(writer.lost().is_empty(), "{:?}", writer.lost());
     text
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::{Args, CommandFactory as _, Parser, ValueEnum, error::ErrorKind};
 use mock_controller::{
     ArcCentre, Dialect as Written, FaultKind, Framing, GcodeSettings, IgnoredWords, LabelSkip, Model, Pace,
-    Settings, Start, Taper, Torn, UnitWithoutPoint, Until,
+    Register, Settings, Start, Taper, Torn, UnitWithoutPoint, Until,
 };
 
 /// A wire-EDM control to feed: receives 3B, 4B or G-code over a paced line, cuts it pulse by pulse, reports where it stood.
@@ -44,10 +44,15 @@ pub(crate) struct Words {
     #[arg(long, value_enum, default_value = "3b")]
     dialect: Dialect,
 
-    /// The offset the control holds, mm. 4B: + wire outside (punch), - inside (die). G-code: what every D but D0 stands
-    /// for, not negative.
+    /// The offset the control holds, mm. 4B: + wire outside (punch), - inside (die). G-code: the offset of G41 and G42
+    /// without a number, and of every number but 0 if there are no registers; not negative.
     #[arg(long, value_name = "MM", default_value_t = 0.0, allow_negative_numbers = true)]
     wire_offset: f64,
+
+    /// G-code: an offset keyed in by number, mm, not negative: `D1=0.127`, `H2=0.11`. May be repeated; then D and H with
+    /// other numbers are the alarm `offset`.
+    #[arg(long = "offset-register", value_name = "D1=MM", value_parser = register)]
+    offset_registers: Vec<(Register, f64)>,
 
     /// 4B: the taper keyed in, degrees; the lead-in's flag declares its sense. An upper guide is cut as well.
     #[arg(long, value_name = "DEG")]
@@ -269,6 +274,12 @@ impl Words {
                 return Err(wrong(&format!("fault {kind} is given twice")));
             }
         }
+        let mut offset_registers = BTreeMap::new();
+        for (register, offset) in self.offset_registers {
+            if offset_registers.insert(register, micrometres(offset)).is_some() {
+                return Err(wrong(&format!("offset register {register} is given twice")));
+            }
+        }
         if matches!(place, At::Serial(_)) && faults.contains_key(&FaultKind::Disconnect) {
             return Err(wrong("fault disconnect: a real cable cannot be pulled from here"));
         }
@@ -279,8 +290,7 @@ impl Words {
                 Dialect::FourB => Written::FourB,
                 Dialect::Gcode => Written::Gcode,
             },
-            // A decimal number of mm is no whole number of binary µm: 0.07 must be 70.
-            wire_offset_um: (self.wire_offset * 1e6).round() / 1e3,
+            wire_offset_um: micrometres(self.wire_offset),
             taper: self.taper.map(|degrees| Taper { degrees, height_um: self.taper_height * 1000.0 }),
             gcode: GcodeSettings {
                 arc_centre: match self.arc_centre {
@@ -294,6 +304,7 @@ impl Words {
                 },
                 block_skip: self.block_skip,
                 ignored_words: self.ignore_words.unwrap_or_default(),
+                offset_registers,
             },
             interpolator: match self.interpolator {
                 Interpolator::Rotated => Model::Rotated,
@@ -357,6 +368,18 @@ fn fault(word: &str) -> Result<(FaultKind, f64), String> {
     } else {
         Err("the rate is not between 0 and 1".to_owned())
     }
+}
+
+fn register(word: &str) -> Result<(Register, f64), String> {
+    let (register, offset) = word.split_once('=').ok_or("expected D1=MM or H1=MM")?;
+    let register = register.trim().parse::<Register>().map_err(|error| error.to_string())?;
+    let offset = offset.trim().parse::<f64>().map_err(|_| "the offset is no number of mm")?;
+    Ok((register, offset))
+}
+
+/// A decimal number of mm is no whole number of binary µm: 0.07 must be 70.
+fn micrometres(length_mm: f64) -> f64 {
+    (length_mm * 1e6).round() / 1e3
 }
 
 fn start(word: &str) -> Result<Start, String> {

@@ -34,7 +34,9 @@ use crate::report::Report;
 use cutter::{Cut, Item, Queued};
 use flow::Flow;
 use plan::Plan;
-pub use plan::gcode::{ArcCentre, GcodeSettings, IgnoredWords, NotAWord, UnitWithoutPoint};
+pub use plan::gcode::{
+    ArcCentre, GcodeSettings, IgnoredWords, NotARegister, NotAWord, Register, UnitWithoutPoint,
+};
 use settings::{Settings, SettingsError};
 use source::Source;
 use text::Text;

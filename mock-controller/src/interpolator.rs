@@ -111,11 +111,11 @@ pub fn run(model: Model, block: &Block, pulse: impl FnMut(i64, i64)) -> Result<T
 /// Most steps a block may take.
 ///
 /// A right block takes at most about J + X + Y of them; a block whose G can never step would take for ever. The factor
-/// is a guess, large enough to let a mildly wrong block run off as it would on a real table; but 100 m beyond what J
-/// allows is beyond any machine.
+/// is a guess, large enough to let a mildly wrong block run off as it would on a real table; but 20 m beyond what J
+/// allows are beyond any machine.
 #[must_use]
 pub fn step_cap(block: &Block) -> u64 {
     let j = u64::from(block.j);
     let mildly_wrong = 64 * (u64::from(block.x) + u64::from(block.y) + j) + 1024;
-    mildly_wrong.min(8 * j + 100_000_000)
+    mildly_wrong.min(8 * j + 20_000_000)
 }

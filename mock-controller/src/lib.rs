@@ -19,7 +19,7 @@
 //! [`Controller::advance`]. [`shell`] alone has a clock, a pseudo-terminal, a socket or a serial device.
 //!
 //! What it deliberately does not do: other dialects than 3B, 4B and plain G-code (no macros), other protocols
-//! than the DC codes, taper in G-code.
+//! than the DC codes. Of a taper in G-code (G50 G51 G52) only the plane of the program is cut, and the words are counted.
 #![warn(missing_docs)]
 
 pub mod control;
@@ -34,7 +34,9 @@ pub mod shell;
 
 pub use control::Controller;
 pub use control::settings::{LabelSkip, Settings, SettingsError, Start, Taper, Torn, Until};
-pub use control::{ArcCentre, GcodeSettings, IgnoredWords, NotAWord, UnitWithoutPoint};
+pub use control::{
+    ArcCentre, GcodeSettings, IgnoredWords, NotARegister, NotAWord, Register, UnitWithoutPoint,
+};
 pub use dialect::Dialect;
 pub use dialect::four_b::{Flag, FourBlock, Fourth, Marks, parse_four_block};
 pub use dialect::three_b::{Axis, Block, Kind, Quadrant, parse_block};

@@ -1,7 +1,7 @@
 //! A machine's file: the options of the command line, one `key = value` a line.
 //!
 //! Keys are the options' names without the dashes; a switch is `true` or `false`; a value may stand in double quotes;
-//! `#` begins a comment. `fault` may be repeated. What is also given on the command line is taken from there.
+//! `#` begins a comment. `fault` and `offset-register` may be repeated. What is also given on the command line is taken from there.
 //!
 //! It is no other program's profile: unknown keys, tables and a file within the file are errors.
 //!
@@ -121,6 +121,7 @@ mod tests {
         assert_eq!(read(text, &["--baud", "9600", "--dialect=3b"]), "--dc3-parity");
         assert_eq!(read(text, &["--unpaced"]), "--dialect=4b --dc3-parity");
         assert_eq!(read("fault = flip=0.1\nfault = drop=0.2", &[]), "--fault=flip=0.1 --fault=drop=0.2");
+        assert_eq!(read("offset-register = D1=0.1 # rough", &[]), "--offset-register=D1=0.1");
         assert_eq!(named(&["--once".into(), "--machine=a.toml".into()]), Some("a.toml".into()));
     }
 

@@ -22,14 +22,15 @@ pub struct Report {
     pub max_overrun_bytes: u64,
     /// How often a DC3 asked for silence because the buffer filled.
     pub holds: u64,
-    /// Character time over elapsed minus held, first to last byte; `null` where characters take no time. Held: from
-    /// DC3's stop bit, or the last character that came in spite of it, until DC1 has reached the sender's program.
+    /// Character time over elapsed minus held, first to last byte: 0 where characters take no time, `null` while no
+    /// time has passed. Held: from DC3's stop bit, or the last character that came in spite of it, until DC1 has reached
+    /// the sender's program.
     pub line_utilisation: Option<f64>,
     /// SHA-256 of the decoded program text, in hex.
     pub sha256: String,
     /// The alarm that stopped the control: `overrun`, `buffer-overflow`, `format`, `endless-block`, `arc-centre`,
     /// `parity`, `nak`, `nak-storm`; with an offset held `tangency`, `radius`, `side`, `flag`, `lead-in`, `taper`;
-    /// with G-code `word`, `number`, `arc`, `call`, `compensation`, `radius`, `interference`.
+    /// with G-code `word`, `number`, `arc`, `call`, `offset`, `compensation`, `radius`, `interference`.
     pub alarm: Option<String>,
     /// The faults that really struck, by kind.
     pub faults: BTreeMap<String, u64>,

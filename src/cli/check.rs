@@ -70,7 +70,9 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         Some(name) => machines::load(name)?.profile,
         None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
-    let reading = Reading { of_machine: profile.dialect.clone(), ..options.reading.clone() };
+    // Wrong arcs are judged here, and so is what stands behind them.
+    let reading =
+        Reading { of_machine: profile.dialect.clone(), keeps_wrong_arcs: true, ..options.reading.clone() };
     let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {

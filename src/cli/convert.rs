@@ -43,7 +43,7 @@ use crate::place::Spot;
 use crate::plot::Plot;
 use crate::rounding::Aim;
 
-/// Convert a program or drawing to another format; work out the wire's offset, or cut it backwards
+/// Write a program or drawing in another format, with an offset or backwards
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub(super) struct Options {
@@ -507,7 +507,9 @@ impl Made {
             }
             Self::Gcode { mut writer, motions } => {
                 writer.finish(text).map_err(Unfinished::Write)?;
-                Ok(counted(motions, "motion"))
+                let mut account = counted(motions, "motion");
+                account.push_str(&left_out(writer.lost(), "kept as a remark"));
+                Ok(account)
             }
             Self::Dxf { mut writer, motions } => {
                 writer.finish(text).map_err(Unfinished::Write)?;
@@ -540,7 +542,7 @@ fn account(blocks: u64, hole: Option<Point>, lost: &Losses) -> String {
         let (x, y) = (hole.x, hole.y);
         text.push_str(&format!("\nthe program begins with the wire in its start hole, X{x:.3} Y{y:.3}"));
     }
-    text.push_str(&left_out(lost));
+    text.push_str(&left_out(lost, "left out"));
     text
 }
 
@@ -549,10 +551,10 @@ fn counted(count: u64, what: &str) -> String {
 }
 
 /// What found no room, a line a kind.
-fn left_out(losses: &Losses) -> String {
+fn left_out(losses: &Losses, how: &str) -> String {
     let mut text = String::new();
     for loss in losses.iter() {
-        text.push_str(&format!("\nleft out: {}", counted(loss.count, loss.kind)));
+        text.push_str(&format!("\n{how}: {}", counted(loss.count, loss.kind)));
         if loss.first.line > 0 {
             text.push_str(&format!(", first in line {}", loss.first.line));
         }

@@ -40,6 +40,9 @@ pub(super) struct Reading {
     /// The dialect of the machine, where it is known and no other is named.
     #[arg(skip)]
     pub(super) of_machine: Option<String>,
+    /// Whether arcs whose radii disagree are read as they are.
+    #[arg(skip)]
+    pub(super) keeps_wrong_arcs: bool,
     #[command(flatten)]
     pub(super) drawing: drawing::OfDrawing,
     /// Where the wire enters a drawing.
@@ -182,7 +185,8 @@ impl Motions {
                 match kind {
                     Kind::FourB => blocks(three_b::motions::Motions::of_four_b(Box::new(text), model)),
                     Kind::Gcode => {
-                        let dialect = dialects::load(reading.dialect(), "read")?;
+                        let mut dialect = dialects::load(reading.dialect(), "read")?;
+                        dialect.keeps_wrong_arcs = reading.keeps_wrong_arcs;
                         let motions = gcode::Motions::of_file(text, dialect.clone())
                             .map_err(|error| Failure::read(word, error))?;
                         Source::Gcode {

@@ -27,7 +27,6 @@ use crate::journal::Job;
 use crate::journal::writer::{self, Writer};
 use crate::link::Port;
 use crate::part::Warning;
-use crate::program::ProgramError;
 
 /// Feed a program to a control, block by block, as it asks
 #[derive(Args, Debug)]
@@ -155,7 +154,7 @@ fn check_block(source: &Source, from_block: u64) -> Result<(), Failure> {
         match program.pull(&mut text) {
             Ok(Some(_)) => {}
             Ok(None) => return Err(feeding::no_such_block(from_block, program.blocks())),
-            Err(ProgramError::Read(error)) => return Err(Failure::read(&source.path, error)),
+            Err(error) => return Err(Failure::program(&source.path, error)),
         }
     }
     Ok(())

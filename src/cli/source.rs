@@ -17,10 +17,10 @@ use crate::formats::gcode::{Dialect, Library, Motions};
 use crate::journal::history::History;
 use crate::journal::resume;
 use crate::motion::{Act, Motion};
-use crate::part::Prepared;
 use crate::part::file::PartFile;
+use crate::part::{Format, Prepared};
 use crate::program::verbatim::{FourB, Gcode};
-use crate::program::{self, Counted, Generated, Line, Program, Segment, Segments};
+use crate::program::{self, Counted, Line, Program, Segment, Segments};
 
 /// A checked source.
 #[derive(Debug)]
@@ -159,7 +159,7 @@ impl Source {
                     size.bytes += text.len() as u64;
                 }
                 Ok(None) => break,
-                Err(program::ProgramError::Read(error)) => return Err(Failure::read(word, error)),
+                Err(error) => return Err(Failure::program(word, error)),
             }
         }
         drop(reader);
@@ -201,7 +201,7 @@ impl Source {
     /// The program, from its first block.
     pub(super) fn program(&self) -> Result<Box<dyn Program>, Failure> {
         Ok(match &self.body {
-            Body::Part(prepared) => Box::new(Generated::new(prepared)),
+            Body::Part(prepared) => program::generated(prepared),
             Body::File(stamp) => {
                 let verified =
                     Verified::open(stamp.clone()).map_err(|error| unreadable(&self.path, &error))?;
@@ -222,7 +222,12 @@ impl Source {
 
     /// Refuses to begin elsewhere than at the first block where the control would not know what is in force there.
     pub(super) fn check_from_block(&self, from_block: u64) -> Result<(), Failure> {
-        let in_force = match self.kind {
+        let kind = match self.prepared().map(|prepared| &prepared.part().format) {
+            Some(Format::FourB) => Kind::FourB,
+            Some(Format::Gcode(_)) => Kind::Gcode,
+            Some(Format::ThreeB) | None => self.kind,
+        };
+        let in_force = match kind {
             Kind::Gcode => "its modal state (units, distance mode, offset)",
             Kind::FourB => "the offset it adds to the outline",
             Kind::ThreeB | Kind::Part | Kind::Dxf => return Ok(()),
@@ -260,7 +265,7 @@ impl Source {
                     }
                 }
                 Ok(None) => break,
-                Err(program::ProgramError::Read(error)) => return Err(Failure::read(&self.path, error)),
+                Err(error) => return Err(Failure::program(&self.path, error)),
             }
         }
         // A recorded segment that was not met lies beyond the program's end.

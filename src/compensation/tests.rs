@@ -283,6 +283,8 @@ fn a_slot_the_wire_cannot_enter_is_passed_by_and_told() {
     let [warning] = compensated.take_warnings()[..] else { panic!() };
     assert_eq!((warning.block, warning.spot.line), (4, 4));
     assert!((warning.unreached.largest - 0.1).abs() < 1e-6);
+    let told = "block 4: the wire does not reach the contour at X5.000 Y5.000; the largest offset that does is 0.100 mm";
+    assert_eq!(warning.to_string(), told);
 }
 
 #[test]

@@ -156,8 +156,16 @@ pub enum Fault {
         /// Half the width of the kerf, mm.
         kerf: f64,
     },
-    /// The wire does not come between two ends of tabs.
-    #[error("the wire of pass {pass} does not come between this end of a tab and the one before it")]
+    /// The wire does not come to the entry.
+    #[error("the wire of pass {pass} does not come to the entry")]
+    EntryLost {
+        /// Which pass, from 1.
+        pass: usize,
+    },
+    /// The wire does not come to an end of a tab, or not between it and the one before.
+    #[error(
+        "the wire of pass {pass} does not come to this end of a tab, or not between it and the one before"
+    )]
     TabLost {
         /// Which pass, from 1.
         pass: usize,
@@ -236,6 +244,9 @@ impl Refusal {
             }
             Fault::TabTooShort { kerf, .. } => {
                 format!("make the tab longer than {:.3} mm by what is to hold the piece", 2.0 * kerf)
+            }
+            Fault::EntryLost { .. } => {
+                "let the wire come in elsewhere, not in a slot that it does not enter".to_owned()
             }
             Fault::TabLost { .. } => {
                 "move the tab away from the corner or slot that the wire does not enter".to_owned()
@@ -334,7 +345,8 @@ pub(super) fn check_numbers(plan: &Plan) -> Result<(), Refusal> {
 
 /// Refuses a point that is none, or farther than any machine.
 pub(super) fn check_point(what: &'static str, point: Point) -> Result<(), Refusal> {
-    match [point.x, point.y].into_iter().find(|value| !(value.abs() <= FARTHEST)) {
+    let is_far = |value: &f64| value.is_nan() || value.abs() > FARTHEST;
+    match [point.x, point.y].into_iter().find(is_far) {
         None => Ok(()),
         Some(value) => {
             let fault = Fault::Number { what, value, must: "within 100 m of the origin" };

@@ -129,8 +129,14 @@ impl Cutter<'_> {
                     return Err(self.refusal(Some(at), fault));
                 }
             };
-            let track = Track::new(&self.course, &outline.path, left, &self.division.marks)
-                .map_err(|lost| self.refusal(Some(lost.at), Fault::TabLost { pass: n + 1 }))?;
+            let track =
+                Track::new(&self.course, &outline.path, left, &self.division.marks).map_err(|lost| {
+                    let fault = match lost.mark {
+                        0 => Fault::EntryLost { pass: n + 1 },
+                        _ => Fault::TabLost { pass: n + 1 },
+                    };
+                    self.refusal(Some(lost.at), fault)
+                })?;
             let kerf = pass.distance.kerf_radius() - TOUCH;
             for (other, contour) in self.contours.iter().enumerate().filter(|(n, _)| *n != self.number) {
                 let elements = contour.path.elements();
@@ -182,7 +188,8 @@ impl Cutter<'_> {
             }
             let (middle, heading) = track.leaving(0.5 * (begin + end));
             let away = self.away(middle, heading, 0, true);
-            let line = Element::Line { start: middle, end: middle + away * (end - begin) };
+            // Farther out than half its length, a way past the tab leaves it as broad as it is.
+            let line = Element::Line { start: middle, end: middle + away * (0.5 * (end - begin)) };
             self.uncut.push((mark, line));
             let length = marks[mark + 1] - marks[mark];
             self.summary.tabs.push(TabSummary { from, to, length, bridge });
@@ -215,7 +222,9 @@ impl Cutter<'_> {
         }
         let kept = self.summary.kept;
         for hole in &mut holes {
-            if self.course.contains(*hole) == (kept == Kept::Inside) {
+            // A hole put where a lead begins is in the part only when the lead crosses it, which is looked at with the lead.
+            let in_part = self.course.contains(*hole) == (kept == Kept::Inside);
+            if in_part && !self.summary.holes_chosen {
                 return Err(self.refusal(Some(*hole), Fault::HoleInPart { kept }));
             }
             *hole = on_grid(*hole);
@@ -309,7 +318,7 @@ impl Cutter<'_> {
     }
 
     fn lead(&mut self, way: &Way, lane: Lane, pass: usize) -> Result<(), Refusal> {
-        let Some(element) = way.element else { return Ok(()) };
+        let Some(element) = way.element.and_then(|element| rounded(&element, self.at)) else { return Ok(()) };
         self.check(&element, lane, [pass; 2])?;
         self.go(Travel::Cut, element);
         Ok(())
@@ -318,7 +327,7 @@ impl Cutter<'_> {
     /// Goes straight through the waste, between two passes.
     fn straight(&mut self, to: Point, lane: Lane, passes: [usize; 2]) -> Result<(), Refusal> {
         if on_grid(to) != self.at {
-            let element = Element::Line { start: self.at, end: to };
+            let element = Element::Line { start: self.at, end: on_grid(to) };
             self.check(&element, lane, passes)?;
             self.go(Travel::Cut, element);
         }
@@ -424,5 +433,5 @@ fn near(one: &Path, other: &Path, within: f64) -> bool {
     min.x < high.x + within && max.x > low.x - within && min.y < high.y + within && max.y > low.y - within
 }
 
-/// Ways may come nearer than they must by as much, mm: a micron, the rounding of their nodes.
-const TOUCH: f64 = 1e-3;
+/// Ways may come nearer than they must by as much, mm: the rounding of their nodes, at most half a micron in X and in Y.
+const TOUCH: f64 = 0.75e-3;

@@ -1,8 +1,9 @@
 //! The wire's path beside a contour as a closed line along which one can measure.
 //!
 //! Places on the contour become places on the path: square beside them where the wire comes there, and else, in an inside
-//! corner, the point of the path nearest to them.
+//! corner or a slot that is too narrow, the point of the path nearest to them that can be seen from there.
 
+use super::clearance::nearest_within;
 use crate::geometry::{Element, Path, Point, Sense, Vector, sweep};
 
 /// The path of one pass, begun beside the contour's beginning, with the places beside the contour's marks.
@@ -29,9 +30,11 @@ pub(super) struct Position {
     pub(super) over: f64,
 }
 
-/// A place beside the contour cannot be told from the one before it: the wire does not come between them.
+/// The wire does not come to a place of the contour, or not between it and the one before it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Unordered {
+pub(super) struct Lost {
+    /// Which mark of the contour.
+    pub(super) mark: usize,
     /// Where it is on the contour.
     pub(super) at: Point,
 }
@@ -39,16 +42,17 @@ pub(super) struct Unordered {
 impl Track {
     /// The track along an outline beside a contour, with marks given in mm along the contour, the first of them 0 and the
     /// last its length.
-    pub(super) fn new(contour: &Path, outline: &Path, left: f64, marks: &[f64]) -> Result<Self, Unordered> {
+    pub(super) fn new(contour: &Path, outline: &Path, left: f64, marks: &[f64]) -> Result<Self, Lost> {
         let mut track = Self::along(outline.elements().to_vec(), left);
-        let (begin, _) = track.beside(contour, 0.0);
+        let begin = track.beside(contour, 0.0).map_err(|at| Lost { mark: 0, at })?;
         track = Self::along(track.between(begin, begin + track.length), left);
         let inner = marks.get(1..marks.len().saturating_sub(1)).unwrap_or_default();
         let mut places = vec![0.0];
         for (n, mark) in inner.iter().enumerate() {
-            let (place, at) = track.beside(contour, *mark);
+            let lost = |at| Lost { mark: n + 1, at };
+            let place = track.beside(contour, *mark).map_err(lost)?;
             if place <= places[n] + SNAP {
-                return Err(Unordered { at });
+                return Err(lost(point_at(contour, *mark).0));
             }
             places.push(place);
         }
@@ -136,16 +140,21 @@ impl Track {
         (n, if length > 0.0 { (place - self.begins[n]) / length } else { 0.0 })
     }
 
-    /// The place beside a point of the contour given in mm along it, and that point.
-    fn beside(&self, contour: &Path, along: f64) -> (f64, Point) {
+    /// The place beside a point of the contour given in mm along it; that point where the wire does not come to it.
+    fn beside(&self, contour: &Path, along: f64) -> Result<f64, Point> {
         let (at, heading) = point_at(contour, along);
         let wire = at + Vector::new(-heading.y, heading.x) * self.left;
-        let nearest = |to: Point| {
-            let distances = self.elements.iter().map(|element| element.distance(to)).enumerate();
-            distances.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
+        let distances = |to: Point| self.elements.iter().map(move |element| element.distance(to)).enumerate();
+        let nearest = distances(wire).min_by(|a, b| a.1.total_cmp(&b.1));
+        let (n, near) = match nearest {
+            Some((n, distance)) if distance <= BESIDE => (n, wire),
+            _ => {
+                let mut others: Vec<(usize, f64)> = distances(at).collect();
+                others.sort_by(|a, b| a.1.total_cmp(&b.1));
+                let seen = |n: &usize| sees(contour, self.left, at, self.elements[*n].nearest(at));
+                (others.into_iter().map(|(n, _)| n).find(seen).ok_or(at)?, at)
+            }
         };
-        let (n, distance) = nearest(wire);
-        let (n, near) = if distance <= BESIDE { (n, wire) } else { (nearest(at).0, at) };
         let length = self.elements[n].length();
         let mut within = fraction(&self.elements[n], near) * length;
         // What all but falls on a node is the node.
@@ -155,8 +164,21 @@ impl Track {
             within = length;
         }
         let place = self.begins[n] + within;
-        (if place > self.length - SNAP { 0.0 } else { place }, at)
+        Ok(if place > self.length - SNAP { 0.0 } else { place })
     }
+}
+
+/// Whether nothing of a contour stands between one of its points and a point of the path to its left.
+fn sees(contour: &Path, left: f64, from: Point, to: Point) -> bool {
+    let way = to - from;
+    let length = way.norm();
+    if length <= 2.0 * SNAP {
+        return true;
+    }
+    let line = Element::Line { start: from + way * (SNAP / length), end: to };
+    let waste_inside = (contour.area() > 0.0) == (left > 0.0);
+    contour.contains(line.at(0.5)) == waste_inside
+        && nearest_within(&line, contour.elements(), CLEAR).is_none()
 }
 
 /// The point at a length along a closed contour and the direction of the contour behind it.
@@ -250,6 +272,8 @@ fn turned(from: Vector, to: Vector, sense: Sense) -> f64 {
 
 /// Places nearer than this are one, mm: a tenth of a micron, which no node shows.
 pub(super) const SNAP: f64 = 1e-4;
+/// A line of sight so near to the contour touches it, mm: a nanometre.
+const CLEAR: f64 = 1e-6;
 /// Shorter parts of an element are left out, mm: what reckoning along a track may be out by.
 const SLIVER: f64 = 1e-7;
 /// A point so near to the path is on it, mm: the offset's own nodes are good to a hundredth of a micron.
@@ -295,7 +319,32 @@ mod tests {
         let found = offset(&contour, 1.0, Corners::Round).unwrap();
         // Both lie within the corner that the wire does not enter.
         let error = Track::new(&contour, &found.outlines[0].path, 1.0, &[0.0, 9.5, 10.0, 40.0]).unwrap_err();
-        assert_eq!(error.at, Point::new(10.0, 0.0));
+        assert_eq!((error.mark, error.at), (2, Point::new(10.0, 0.0)));
+    }
+
+    #[test]
+    fn a_place_in_a_slot_is_not_taken_for_one_behind_its_wall() {
+        // A slot 0.4 mm wide and 6 mm deep, and a wall of 0.2 mm between it and the outside.
+        let p = Point::new;
+        let nodes = [
+            p(0.0, 0.0),
+            p(10.0, 0.0),
+            p(10.0, 8.0),
+            p(9.8, 8.0),
+            p(9.8, 2.0),
+            p(9.4, 2.0),
+            p(9.4, 8.0),
+            p(0.0, 8.0),
+        ];
+        let line = |n: usize| Element::Line { start: nodes[n], end: nodes[(n + 1) % nodes.len()] };
+        let contour = Path::new((0..nodes.len()).map(line).collect()).unwrap();
+        let found = offset(&contour, -0.5, Corners::Round).unwrap();
+        // 3 mm down the slot: the nearest path runs behind the wall, the one that is seen lies before the mouth.
+        let mark = 10.0 + 8.0 + 0.2 + 3.0;
+        let track =
+            Track::new(&contour, &found.outlines[0].path, -0.5, &[0.0, mark, contour.length()]).unwrap();
+        let (at, _) = track.leaving(track.place(Position { mark: 1, laps: 0, over: 0.0 }));
+        assert!(at.y > 8.0 && at.x < 9.8, "{at}");
     }
 
     #[test]

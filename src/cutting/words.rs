@@ -5,6 +5,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 use super::{Distance, Lead, Pass, Skim, Tab, Tabs, Way};
+use crate::motion::Text;
 
 /// A spelling that is none.
 #[derive(Clone, Debug, Eq, Error, PartialEq)]
@@ -75,9 +76,9 @@ pub fn passes(text: &str) -> Result<(Pass, Vec<Skim>), Misspelt> {
         let (run, words) = part.split_once('=').map_or((part, None), |(run, words)| (run, Some(words)));
         let (offset, way) = run.split_once(':').map_or((run, None), |(offset, way)| (offset, Some(way)));
         let distance = Distance::Offset(number(offset).ok_or_else(wrong)?);
-        let words: Vec<_> = words
+        let words: Vec<Text> = words
             .map_or_else(Vec::new, |words| words.split('+').map(|word| word.as_bytes().into()).collect());
-        if words.iter().any(|word: &Box<[u8]>| word.is_empty()) {
+        if words.iter().any(|word| word.is_empty()) {
             return Err(wrong());
         }
         let pass = Pass { distance, words };

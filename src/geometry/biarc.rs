@@ -65,13 +65,26 @@ pub enum FitError {
     /// The curve has no point somewhere.
     #[error("the curve has no finite point at parameter {0}")]
     NotFinite(f64),
+    /// The curve goes where no length is measured.
+    #[error("the curve leads to a point {0:e} mm out")]
+    Far(f64),
+    /// Neither lines nor arcs follow it.
+    #[error("the curve cannot be followed at parameter {0}")]
+    Lost(f64),
     /// It would take more elements than [`ELEMENTS_MAX`].
     #[error("the curve takes more than {ELEMENTS_MAX} elements")]
     TooMany,
 }
 
 /// The most elements a curve may take: a guard against a tolerance far too small for the curve.
-pub const ELEMENTS_MAX: usize = 1_000_000;
+pub const ELEMENTS_MAX: usize = 100_000;
+
+/// A curve no point of which is farther than this from its start is none, mm.
+const POINT_WITHIN: f64 = 1e-6;
+/// Beyond this the squares of lengths are no longer numbers, mm.
+const FAR: f64 = 1e100;
+/// More places than this that are bridged by a line are no jumps of a curve but a curve that cannot be followed.
+const BRIDGES_MAX: usize = 64;
 
 /// Two ends of a curve this close are one, mm: a closed curve is closed to the bit.
 const CLOSED_WITHIN: f64 = 1e-9;
@@ -86,6 +99,12 @@ pub fn fit(curve: &impl Curve, fit: &Fit) -> Result<Vec<Element>, FitError> {
         return Err(FitError::Tolerance(fit.tolerance));
     }
     let walk = Walk::along(curve)?;
+    match walk.reach(curve) {
+        far if far > FAR => return Err(FitError::Far(far)),
+        // A curve this small is a point.
+        near if near <= POINT_WITHIN => return Ok(Vec::new()),
+        _ => {}
+    }
     let mut elements = Vec::new();
     let mut node = walk.start();
     let mut stretches = walk.stretches().peekable();
@@ -146,6 +165,7 @@ fn pieces(
     };
     let whole = stretch.length();
     let mut elements: Vec<Element> = Vec::new();
+    let mut bridges = 0;
     let mut at = 0.0;
     let mut node = stretch.node(curve, 0.0);
     node.point = start;
@@ -229,6 +249,10 @@ fn pieces(
             Some(found) if found.is_kept(curve, stretch, at, fit.tolerance) => (found.to, found.pieces),
             _ => {
                 // Shorter than any step that could be told apart: a jump of the curve, bridged by a line.
+                bridges += 1;
+                if bridges > BRIDGES_MAX {
+                    return Err(FitError::Lost(stretch.parameter(at)));
+                }
                 let to = (at + step.max(whole * 1e-12)).min(whole);
                 let goal = if to >= whole { end } else { stretch.node(curve, to).point };
                 (to, Pieces::chord(node.point, goal))

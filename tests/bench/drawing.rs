@@ -2,13 +2,15 @@
 //!
 //! The drawing is made in memory: 100,000 entities in closed contours of lines, arcs, polylines with bulges, circles,
 //! inserted blocks, ellipses and splines, their order shuffled so that no contour stands together. Every figure is
-//! the median of five runs. Nothing is asserted: machines are noisy.
+//! the median of five runs. With `PEER_PYTHON`, a Python that has ezdxf, the same files are read by it in the same run.
+//! Nothing is asserted: machines are noisy.
 
 #![expect(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 #![expect(clippy::unwrap_used, reason = "a benchmark that cannot go on has nothing to say")]
 
 use std::fmt::Write;
 use std::hint::black_box;
+use std::process::Command;
 use std::time::Instant;
 
 use dripfeed::drawing::dxf::{self, Drawing, Options};
@@ -52,6 +54,15 @@ fn main() {
         row(&format!("{ENTITIES} entities, {name}: the `dxf` crate alone"), "s", || {
             black_box(::dxf::Drawing::load(&mut text.as_bytes()).unwrap());
         });
+        if let Some(python) = std::env::var_os("PEER_PYTHON") {
+            let file = tempfile::NamedTempFile::new().unwrap();
+            std::fs::write(file.path(), text).unwrap();
+            let output = Command::new(python).arg("-c").arg(EZDXF).arg(file.path()).output().unwrap();
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            let values = String::from_utf8(output.stdout).unwrap();
+            let values = values.split_whitespace().map(|value| value.parse().unwrap()).collect();
+            told(&format!("{ENTITIES} entities, {name}: `ezdxf.readfile`, no contours (peer)"), "s", values);
+        }
     }
     let spline = wave();
     for elements in [Elements::Biarcs, Elements::Lines, Elements::Fewest] {
@@ -64,14 +75,27 @@ fn main() {
     }
 }
 
+/// Prints the seconds of five readings.
+const EZDXF: &str = "
+import sys, time, ezdxf
+for _ in range(5):
+    began = time.perf_counter()
+    ezdxf.readfile(sys.argv[1])
+    print(time.perf_counter() - began)
+";
+
 fn row(what: &str, unit: &str, mut work: impl FnMut()) {
-    let mut values: Vec<f64> = (0..RUNS)
+    let values: Vec<f64> = (0..RUNS)
         .map(|_| {
             let began = Instant::now();
             work();
             began.elapsed().as_secs_f64()
         })
         .collect();
+    told(what, unit, values);
+}
+
+fn told(what: &str, unit: &str, mut values: Vec<f64>) {
     values.sort_by(f64::total_cmp);
     println!(
         "| {what} | {:.3} {unit} | {RUNS} ({:.3} - {:.3}) |",

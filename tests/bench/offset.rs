@@ -2,7 +2,8 @@
 //!
 //! Both work on the same 252 elements by 0.07 mm. The bare call is given the polyline ready made and nothing else; ours
 //! takes a path, looks for places where it meets itself, gives the arcs their centres back, says what each element
-//! runs beside and what is not reached. Rounds alternate, so that what slows the machine slows both.
+//! runs beside and what is not reached. Rounds alternate and are short, so that what slows the machine slows both, or one
+//! round of many.
 
 #![expect(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 #![expect(clippy::unwrap_used, reason = "a benchmark that cannot go on has nothing to say")]

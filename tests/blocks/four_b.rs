@@ -43,7 +43,7 @@ fn outline() -> String {
 
 fn motions(text: &str) -> Vec<Motion> {
     let motions = Motions::of_four_b(text.as_bytes(), Model::Rotated);
-    motions.map(|motion| Motion { spot: Spot::default(), ..motion.unwrap() }).collect()
+    motions.map(|motion| Motion { spot: Spot::default(), ..motion.expect("the program is 4B") }).collect()
 }
 
 fn wire(motions: &[Motion], keyed: Keyed) -> Result<Vec<Motion>, ContourError> {
@@ -76,14 +76,14 @@ fn radii(elements: &[Element]) -> Vec<i64> {
 
 /// The outline between one lead-in and one lead-out.
 fn between_leads(elements: &[Element]) -> Path {
-    Path::new(elements[1..elements.len() - 1].to_vec()).unwrap()
+    Path::new(elements[1..elements.len() - 1].to_vec()).expect("the elements follow one another")
 }
 
 fn write(form: Form, motions: &[Motion]) -> Result<(String, Writer), WriteError> {
     let (mut writer, mut text) = (Writer::new(form), Vec::new());
     motions.iter().try_for_each(|motion| writer.write(motion, &mut text))?;
     writer.finish(&mut text)?;
-    Ok((String::from_utf8(text).unwrap(), writer))
+    Ok((String::from_utf8(text).expect("4B is ASCII"), writer))
 }
 
 fn rotated() -> Form {
@@ -103,11 +103,15 @@ fn without_flags(mut motions: Vec<Motion>) -> Vec<Motion> {
 
 /// Every point of the way of the wire is as far from the outline as the offset, to within a micron, and on its side.
 fn assert_runs_beside(outline: &Path, way: &Path, offset: f64) {
+    assert_runs_within(outline, way, offset, 0.001);
+}
+
+fn assert_runs_within(outline: &Path, way: &Path, offset: f64, tolerance: f64) {
     for element in way.elements() {
         for n in 0..=200 {
             let at = element.at(f64::from(n) / 200.0);
             let distance = outline.distance(at);
-            assert!((distance - offset.abs()).abs() < 0.001, "{distance} at {at}");
+            assert!((distance - offset.abs()).abs() < tolerance, "{distance} at {at}");
             assert_eq!(outline.contains(at), offset < 0.0, "{at}");
         }
     }
@@ -391,6 +395,8 @@ fn a_taper_tilts_the_wire_by_the_flag_of_the_lead_in() {
 fn what_cannot_be_set_off_is_refused_with_its_block() {
     let without_lead_in = OUTLINE[1..].join("\n");
     let corner = outline().replace(OUTLINE[2], "B5000B5000B005000GYL1");
+    // A piece of a micron is no way round a corner.
+    let hidden = outline().replace(OUTLINE[2], "B4999B4999B004999GYL1B1B0B1GXL1B0B1B1GYL2");
     for (text, keyed, block, wanted) in [
         (outline(), -5.0, 3, "the radius of 5.000 mm becomes 0.000 mm"),
         (outline(), 5.0, 8, "the radius of 5.000 mm becomes 0.000 mm"),
@@ -398,6 +404,7 @@ fn what_cannot_be_set_off_is_refused_with_its_block() {
         (outline().replace("B005000B5000DGXNR1", "B005000GXNR1"), 0.1, 5, "without a flag"),
         (without_lead_in, 0.1, 1, "no straight move leads"),
         (corner, 0.1, 3, "a corner of 45.00°"),
+        (hidden, 0.1, 3, "a corner of 45.00°"),
         ("B0B5000B5000GYL2 B5000B0B5000GXL1 B0B9000B9000GYL2".into(), 0.1, 2, "no arc"),
         (outline(), f64::NAN, 1, "no number"),
     ] {
@@ -412,6 +419,23 @@ fn what_cannot_be_set_off_is_refused_with_its_block() {
     assert!(write(rotated(), &tilted).unwrap_err().message.contains("on its panel"));
     let wrong = motions(&outline().replace("B5000DDG", "B5000DG"));
     assert!(write(rotated(), &wrong).unwrap_err().message.contains("on the other side"));
+}
+
+#[test]
+fn pieces_of_a_micron_that_close_a_contour_do_not_turn_the_wire() {
+    // The last line ends a micron low, and a block of a micron brings it home.
+    let text = outline().replace(
+        "B15000B0B015000GXL1\nB0B15000B015000GYL2",
+        "B15000B1B015000GXL4\nB0B1B1GYL2\nB0B15000B015000GYL2",
+    );
+    assert_eq!(text.lines().count(), 17);
+    let nominal = between_leads(&elements(&motions(&text)));
+    for keyed in [0.5, -0.5] {
+        let way = between_leads(&elements(&wire(&motions(&text), offset(keyed)).unwrap()));
+        assert!(way.is_closed());
+        // The step of a micron is in the outline itself.
+        assert_runs_within(&nominal, &way, keyed, 0.0011);
+    }
 }
 
 #[test]

@@ -249,6 +249,9 @@ fn every_reader(choice: usize, text: &[u8]) {
     let read: Result<Vec<Motion>, _> = motions.take(MOTIONS).collect();
     let Ok(read) = read else { return };
     written_and_read_again(&dialect, &read);
+    // Into another one too: its words may mean something else there.
+    let other = BUILT_IN[choice / BUILT_IN.len() % BUILT_IN.len()].1;
+    written_and_read_again(&Dialect::parse(other).unwrap(), &read);
 }
 
 /// Nothing of a line is lost: what no piece holds is blank, or marks a remark.

@@ -1,5 +1,7 @@
 //! The wire's path under G41 and G42 against the contour as programmed: points, and one way against the other.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use std::collections::BTreeMap;
 
 use dripfeed::compensation::{Compensated, CompensationError, local};

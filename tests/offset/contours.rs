@@ -1,5 +1,7 @@
 //! Contours that no one drew: stars with fillets, combs, dumbbells, keys; counter-clockwise, from a seed.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use dripfeed::geometry::{Element, Path, Point, Sense};
 
 /// Numbers from a seed, the same everywhere.
@@ -125,11 +127,14 @@ pub(crate) fn key(dice: &mut Dice) -> Path {
     Path::new(elements).unwrap()
 }
 
+/// Where a corner's arc begins and ends, and about what it turns, if it has one.
+type Rounded = (Point, Point, Option<(Point, Sense)>);
+
 /// A polygon whose corners are rounded with arcs, each as far as the sides have room.
 pub(crate) fn filleted(nodes: &[Point], radii: &[f64]) -> Path {
     let count = nodes.len();
     // For each corner: where the arc begins and ends, and about what.
-    let corners: Vec<(Point, Point, Option<(Point, Sense)>)> = (0..count)
+    let corners: Vec<Rounded> = (0..count)
         .map(|n| {
             let (before, here, after) = (nodes[(n + count - 1) % count], nodes[n], nodes[(n + 1) % count]);
             let (back, ahead) = (before - here, after - here);

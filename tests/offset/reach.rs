@@ -69,6 +69,29 @@ fn no_element_is_lost_in_silence() {
     }
 }
 
+#[test]
+fn nothing_is_told_that_the_wire_reaches() {
+    let mut told = 0;
+    for seed in 0..200 {
+        let (kind, path) = contours::any(seed);
+        let by = Dice::new(seed + 13_000).between(0.05, 1.0);
+        for left in [by, -by] {
+            let Ok(found) = offset(&path, left, Corners::Round) else { continue };
+            for run in &found.unreached {
+                told += 1;
+                let stays = elements(run, path.elements().len())
+                    .into_iter()
+                    .flat_map(|n| (0..=200).map(move |step| (n, f64::from(step) / 200.0)))
+                    .map(|(n, at)| path.elements()[n].at(at))
+                    .map(|point| found.outlines.iter().map(|o| o.path.distance(point)).fold(9e9, f64::min))
+                    .fold(0.0, f64::max);
+                assert!(stays > by + 0.5 * UM, "{kind} {seed} {left}: {run:?}, {stays}");
+            }
+        }
+    }
+    assert!(told > 300, "{told}");
+}
+
 /// How far the middle of an element is from the wire.
 fn wire_misses(found: &Offset, path: &Path, element: usize) -> f64 {
     let middle = path.elements()[element].at(0.5);

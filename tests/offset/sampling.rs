@@ -3,8 +3,8 @@
 //! Sound: every point of an outline lies at the offset from the contour and on the wire's side. Complete: every point
 //! at the offset square beside the contour, or about a corner, that is nowhere nearer, lies on an outline.
 
-use dripfeed::geometry::offset::{Corners, Impossible, Offset, offset};
-use dripfeed::geometry::{Path, Point};
+use dripfeed::geometry::offset::{Corners, Impossible, Offset, Origin, offset};
+use dripfeed::geometry::{Element, Path, Point};
 
 use crate::contours::{self, Dice};
 use crate::measure::{Inside, distance, samples};
@@ -51,6 +51,87 @@ fn the_oracle_sees_a_lost_outline_a_micron_and_the_wrong_side() {
     assert!(fault(&path, 0.1, &lost).is_err());
     let other = offset(&path, -0.1, Corners::Round).unwrap();
     assert!(fault(&path, 0.1, &other).is_err());
+}
+
+#[test]
+fn arcs_keep_the_very_centres_of_the_contour_and_of_its_corners() {
+    let (mut arcs, mut corners) = (0, 0);
+    for seed in 0..CONTOURS {
+        let (kind, path) = contours::any(seed);
+        let by = Dice::new(seed + 3000).between(0.03, 0.6);
+        for left in [by, -by] {
+            let Ok(found) = offset(&path, left, Corners::Round) else { continue };
+            let ways = found.outlines.iter().flat_map(|o| o.path.elements().iter().zip(&o.origins));
+            for (way, origin) in ways {
+                let beside = path.elements()[origin.element()];
+                match (origin, way, beside) {
+                    (Origin::Element(_), Element::Line { .. }, Element::Line { .. }) => {}
+                    (Origin::Element(_), Element::Arc { centre, .. }, Element::Arc { centre: own, .. }) => {
+                        arcs += 1;
+                        assert_eq!(*centre, own, "{kind} {seed} {left}");
+                    }
+                    (Origin::Corner(_), Element::Arc { centre, .. }, _) => {
+                        corners += 1;
+                        assert_eq!(*centre, beside.end(), "{kind} {seed} {left}");
+                    }
+                    other => panic!("{kind} {seed} {left}: {other:?}"),
+                }
+            }
+        }
+    }
+    assert!(arcs > 1000 && corners > 300, "{arcs} {corners}");
+}
+
+#[test]
+fn a_sharp_corner_never_comes_nearer_and_its_straights_are_tangents() {
+    let mut sharper = 0;
+    for seed in 0..CONTOURS {
+        let (kind, path) = contours::any(seed);
+        let by = Dice::new(seed + 5000).between(0.03, 1.0);
+        for left in [by, -by] {
+            let Ok(found) = offset(&path, left, Corners::Sharp { limit: 2.0 }) else { continue };
+            for outline in &found.outlines {
+                for (way, origin) in outline.path.elements().iter().zip(&outline.origins) {
+                    for (point, _) in samples(way, 40) {
+                        let off = distance(&path, point) - by;
+                        assert!(off > -UM && off < by + UM, "{kind} {seed} {left}: {point} is off by {off}");
+                        let own = path.elements()[origin.element()].distance(point);
+                        assert!(own > by - UM && own < 2.0 * by + UM, "{kind} {seed} {left}: {own}");
+                        sharper += usize::from(off > UM);
+                    }
+                }
+            }
+        }
+    }
+    assert!(sharper > 500, "{sharper}");
+}
+
+#[test]
+fn ends_that_miss_their_circle_by_a_rounding_do_no_more_harm_than_that() {
+    let rounded = |p: Point| Point::new((p.x * 1e3).round() / 1e3, (p.y * 1e3).round() / 1e3);
+    let mut judged = 0;
+    for seed in 0..CONTOURS {
+        let (kind, path) = contours::any(seed);
+        let elements = path.elements().iter().map(|element| match *element {
+            Element::Line { start, end } => Element::Line { start: rounded(start), end: rounded(end) },
+            Element::Arc { start, end, centre, sense } => {
+                Element::Arc { start: rounded(start), end: rounded(end), centre: rounded(centre), sense }
+            }
+        });
+        let near = Path::new(elements.collect()).unwrap();
+        let by = Dice::new(seed + 7000).between(0.03, 0.6);
+        for left in [by, -by] {
+            let Ok(found) = offset(&near, left, Corners::Round) else { continue };
+            judged += 1;
+            for way in found.outlines.iter().flat_map(|o| o.path.elements()) {
+                for (point, _) in samples(way, 8) {
+                    let off = distance(&path, point) - by;
+                    assert!(off.abs() < 2.5 * UM, "{kind} {seed} {left}: {point} is off by {off}");
+                }
+            }
+        }
+    }
+    assert!(judged > 300, "{judged}");
 }
 
 /// What is wrong with the offset of a closed contour.

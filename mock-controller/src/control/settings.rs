@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
-use super::plan::gcode::GcodeSettings;
+use super::plan::gcode::{GcodeSettings, Register};
 use crate::dialect::Dialect;
 use crate::interpolator::Model;
 use crate::line::fault::FaultKind;
@@ -17,9 +17,9 @@ pub struct Settings {
     pub pace: Pace,
     /// What the programs are written in. Default: 3B.
     pub dialect: Dialect,
-    /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). G-code: what every `D` but
-    /// `D0` stands for, not negative; the side is G41's and G42's. Default 0; with 3B it must be 0, the offset is in the
-    /// numbers.
+    /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). G-code: the offset of G41
+    /// and G42 without a number, not negative; the side is theirs. Default 0; with 3B it must be 0, the offset is in
+    /// the numbers.
     pub wire_offset_um: f64,
     /// The taper keyed in, 4B only. Default: none, the wire is vertical.
     pub taper: Option<Taper>,
@@ -197,6 +197,16 @@ impl Settings {
         if self.dialect == Dialect::Gcode && self.wire_offset_um < 0.0 {
             return Err(SettingsError::NegativeOffset(self.wire_offset_um));
         }
+        if let Some(&register) = self.gcode.offset_registers.keys().next()
+            && self.dialect != Dialect::Gcode
+        {
+            return Err(SettingsError::RegisterDialect(register));
+        }
+        if let Some((&register, &offset_um)) =
+            self.gcode.offset_registers.iter().find(|&(_, offset)| !(0.0..=OFFSET_MAX_UM).contains(offset))
+        {
+            return Err(SettingsError::Register { register, offset_um });
+        }
         if let Some(taper) = self.taper {
             if self.dialect != Dialect::FourB {
                 return Err(SettingsError::TaperDialect);
@@ -247,6 +257,15 @@ pub enum SettingsError {
     WireOffsetInNumbers,
     /// In G-code the side is told by G41 and G42, not by a sign.
     NegativeOffset(f64),
+    /// Only G-code names offsets by number.
+    RegisterDialect(Register),
+    /// Not an offset between 0 and 10 mm.
+    Register {
+        /// Where it is kept.
+        register: Register,
+        /// What was keyed in.
+        offset_um: f64,
+    },
     /// An angle not between 0 and 45°, or a height not between 0 and 1000 mm.
     Taper(Taper),
     /// Only 4B knows a taper that is keyed in.
@@ -292,6 +311,14 @@ impl fmt::Display for SettingsError {
             SettingsError::NegativeOffset(offset_um) => write!(
                 f,
                 "a wire offset of {} mm is negative: in G-code G41 and G42 tell the side",
+                offset_um / 1000.0
+            ),
+            SettingsError::RegisterDialect(register) => {
+                write!(f, "offset register {register}: only G-code programs name offsets by number")
+            }
+            SettingsError::Register { register, offset_um } => write!(
+                f,
+                "offset register {register}: {} mm is not between 0 and 10 mm; G41 and G42 tell the side",
                 offset_um / 1000.0
             ),
             SettingsError::Taper(Taper { degrees, height_um }) => write!(

@@ -59,7 +59,7 @@ impl Utilisation {
         self.held
     }
 
-    /// `None` while nothing has come, or where characters take no time.
+    /// `None` while nothing has come, or no time has passed since.
     pub(crate) fn value(&self, takes: impl Fn(u64) -> Duration) -> Option<f64> {
         let elapsed = self.last.checked_sub(self.first?)?;
         let carrying = takes(self.characters);

@@ -56,7 +56,7 @@ pub(crate) fn arc(
 fn nearest(model: Model, block: Block, wanted: Point) -> Block {
     // On a small circle a few µm of J are a turn.
     let reach = (size_of_arc(&block) / 2).clamp(1, REACH_UM);
-    let (least, most) = (block.j.saturating_sub(reach), block.j + reach);
+    let (least, most) = (block.j.saturating_sub(reach), block.j.saturating_add(reach));
     let mut best = (f64::INFINITY, block.j);
     let mut consider = |j: u32, x: i64, y: i64| {
         let off = Point::whole([x, y]).minus(wanted).length();

@@ -18,6 +18,11 @@ fn circle(words: &str) -> String {
     format!("B5000BB5000B0DGXL1\nB5000B0B20000{words}NR1\nB5000BB5000GXL3\nDD\n")
 }
 
+/// The same circle the other way round: a clockwise arc that starts on +X enters the fourth quadrant.
+fn clockwise(words: &str) -> String {
+    circle(words).replace("NR1", "SR4").replace("nr1", "sr4")
+}
+
 #[test]
 fn the_vectors_of_the_sources_in_both_field_orders() {
     for (offset_um, flag, radius) in [
@@ -30,15 +35,17 @@ fn the_vectors_of_the_sources_in_both_field_orders() {
         for words in
             [format!("B5000{flag}GY"), format!("B5000GY{flag}"), format!(" b5000 y {flag} ").to_lowercase()]
         {
-            let (report, watch) = watch(four_b(offset_um), &circle(&words));
-            assert_eq!((report.blocks, report.programs, report.alarm), (3, 1, None), "{words}");
-            assert_eq!(report.end_um, [0, 0], "{words}");
-            assert_eq!(report.pulses, 10 * radius, "{offset_um} {words}");
-            let (near, far) = watch.distances(2, 0.0, 0.0);
-            let radius = radius as f64;
-            assert!(near > radius - 1.5 && far < radius + 1.5, "{words}: {near} {far}");
-            let length = radius * (2.0 + 2.0 * PI) / 1000.0;
-            assert!((report.path_length_mm - length).abs() < 1e-6, "{}", report.path_length_mm);
+            for program in [circle(&words), clockwise(&words)] {
+                let (report, watch) = watch(four_b(offset_um), &program);
+                assert_eq!((report.blocks, report.programs, report.alarm), (3, 1, None), "{program}");
+                assert_eq!(report.end_um, [0, 0], "{program}");
+                assert_eq!(report.pulses, 10 * radius, "{offset_um} {program}");
+                let (near, far) = watch.distances(2, 0.0, 0.0);
+                let radius = radius as f64;
+                assert!(near > radius - 1.5 && far < radius + 1.5, "{program}: {near} {far}");
+                let length = radius * (2.0 + 2.0 * PI) / 1000.0;
+                assert!((report.path_length_mm - length).abs() < 1e-6, "{}", report.path_length_mm);
+            }
         }
     }
 }

@@ -220,6 +220,14 @@ fn conditions_are_passed_over_and_counted_and_the_list_is_a_parameter() {
         ("T", 1),
     ];
     assert_eq!(counts, wanted);
+    // Under G51 and G52 the angle may change alone; after G50, or in the next program, it means nothing.
+    let inclined = "%\nG51 A1.\nG01 X1. A2.\nG52 A0.5\nX2. T3.\n";
+    let (report, _) = cut(&format!("{inclined}%\n"));
+    assert_eq!((report.alarm, report.words_passed_over["A"], report.end_um), (None, 3, [2000, 0]));
+    for after in ["G50 A0.\nX3. A1.\n%\n", "M02\n%\nG01 X3. A1.\n%\n"] {
+        let (report, _) = cut(&format!("{inclined}{after}"));
+        assert_eq!((report.alarm.as_deref(), report.end_um), (Some("word"), [2000, 0]), "{after}");
+    }
     let strict = GcodeSettings { ignored_words: "C".parse().unwrap(), ..GcodeSettings::default() };
     let (report, _) = read_as(strict, program);
     assert_eq!((report.alarm.as_deref(), report.blocks), (Some("word"), 0));

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests, too, fail by panicking")]
 
+mod arbitrary;
 mod arcs;
 mod beside;
 mod ends;
@@ -10,7 +11,9 @@ mod flow;
 mod four_b;
 mod gcode;
 mod lines;
+mod mixed;
 mod quiet;
+mod registers;
 mod sender;
 mod taper;
 mod torn;

@@ -6,6 +6,7 @@
 
 mod device;
 mod faults;
+mod fields;
 mod process;
 mod pty;
 mod tcp;

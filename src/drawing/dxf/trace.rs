@@ -54,8 +54,13 @@ pub(super) fn trace(figure: &Figure, placement: &Placement, with: &Fit) -> Resul
                 return Err(TraceError::Ratio(*ratio));
             }
             let (a, b) = (Vector::new(major[0], major[1]), left * *ratio);
-            let centre = placement.point(*centre);
-            curve(&Ellipse::new(centre, placement.direction(a), placement.direction(b), *from, *to), with)?
+            ellipse(
+                placement.point(*centre),
+                placement.direction(a),
+                placement.direction(b),
+                [*from, *to],
+                with,
+            )?
         }
         Figure::Polyline { vertices, closed, facing } => {
             polyline(vertices, *closed, *facing, placement, with)?
@@ -63,17 +68,34 @@ pub(super) fn trace(figure: &Figure, placement: &Placement, with: &Fit) -> Resul
         Figure::Spline(nurbs) => spline(nurbs, placement, with)?,
         Figure::Insert(_) | Figure::Uncut(_) => Vec::new(),
     };
-    let near = |p: Point| p.x.abs() <= FAR && p.y.abs() <= FAR;
-    let is_near = |e: &Element| match *e {
-        Element::Line { start, end } => near(start) && near(end),
+    let all_near = |e: &Element| match *e {
+        Element::Line { start, end } => is_near(start) && is_near(end),
         Element::Arc { start, end, centre, .. } => {
-            near(start) && near(end) && (centre - start).norm().is_finite()
+            is_near(start) && is_near(end) && (centre - start).norm().is_finite()
         }
     };
-    if !elements.iter().all(is_near) {
+    if !elements.iter().all(all_near) {
         return Err(TraceError::Far);
     }
     Ok(elements.into_iter().filter(|e| matches!(e, Element::Arc { .. }) || e.start() != e.end()).collect())
+}
+
+/// A part of an ellipse; what lies too far out is not even tried.
+fn ellipse(
+    centre: Point,
+    a: Vector,
+    b: Vector,
+    [from, to]: [f64; 2],
+    with: &Fit,
+) -> Result<Vec<Element>, TraceError> {
+    if !(is_near(centre) && is_near(centre + a) && is_near(centre + b)) {
+        return Err(TraceError::Far);
+    }
+    curve(&Ellipse::new(centre, a, b, from, to), with)
+}
+
+fn is_near(p: Point) -> bool {
+    p.x.abs() <= FAR && p.y.abs() <= FAR
 }
 
 fn curve(of: &impl Curve, with: &Fit) -> Result<Vec<Element>, TraceError> {
@@ -97,7 +119,7 @@ fn round(
     let image = placement.point(centre);
     if !placement.keeps_circles() {
         let (a, b) = (placement.direction(Vector::x()) * radius, placement.direction(Vector::y()) * radius);
-        return curve(&Ellipse::new(image, a, b, from.to_radians(), to.to_radians()), with);
+        return ellipse(image, a, b, [from.to_radians(), to.to_radians()], with);
     }
     let at = |angle: f64| image + placement.direction(direction(angle) * radius);
     let sense = if placement.mirrors() { Sense::Clockwise } else { Sense::CounterClockwise };
@@ -146,7 +168,7 @@ fn polyline(
             let left = Vector::new(-seen.y, seen.x) * bulge.signum();
             let image = placement.point([centre.x, centre.y]);
             let (a, b) = (placement.direction(seen), placement.direction(left));
-            let made = curve(&Ellipse::new(image, a, b, 0.0, 4.0 * libm::atan(bulge.abs())), with)?;
+            let made = ellipse(image, a, b, [0.0, 4.0 * libm::atan(bulge.abs())], with)?;
             // The vertices themselves are the ends.
             extend_between(&mut elements, made, start, end);
         }
@@ -171,6 +193,9 @@ fn spline(nurbs: &Nurbs, placement: &Placement, with: &Fit) -> Result<Vec<Elemen
     }
     let degree = usize::try_from(nurbs.degree).unwrap_or(0);
     let controls: Vec<Point> = nurbs.controls.iter().map(|&p| placement.point(p)).collect();
+    if !controls.iter().all(|&p| is_near(p)) {
+        return Err(TraceError::Far);
+    }
     curve(&Spline::new(degree, nurbs.knots.clone(), &controls, &nurbs.weights)?, with)
 }
 

@@ -10,7 +10,7 @@
 //! in its start hole. Without a lead-out the wire goes on from where it stands. What is said of a wire outside or inside
 //! is the source's; which end of the wire A belongs to is our reading.
 
-use super::outline::{CORNER_HELP, Outlined, corner, side_of, told};
+use super::outline::{CORNER_HELP, Outlined, first_corner, side_of, size, told};
 use crate::geometry::{Element, Point, Vector};
 use crate::motion::runs::{Between, ContourError, Contourwise, Rework, Run};
 use crate::motion::{Act, Flag, Motion, Side};
@@ -229,11 +229,9 @@ fn shifted(run: &Run, parts: &Outlined, side: Side, offset: f64) -> Result<Vec<E
     let cuts = &parts.cuts[parts.outline.clone()];
     let right = if side == Side::Right { offset } else { -offset };
     let (Some(first), Some(last)) = (cuts.first(), cuts.last()) else { return Ok(Vec::new()) };
-    let pairs = cuts.windows(2).map(|pair| (&pair[0], &pair[1]));
-    for (before, after) in pairs.chain(parts.closed.then_some((last, first))) {
-        if let Some(turned) = corner(&before.1, &after.1) {
-            return Err(ContourError::at(&run.motions[after.0], told(turned), CORNER_HELP));
-        }
+    let elements: Vec<Element> = cuts.iter().map(|cut| cut.1).collect();
+    if let Some((n, turned)) = first_corner(&elements, parts.closed) {
+        return Err(ContourError::at(&run.motions[cuts[n].0], told(turned), CORNER_HELP));
     }
     let mut beside: Vec<Element> = Vec::with_capacity(cuts.len());
     for (n, &(index, element)) in cuts.iter().enumerate() {
@@ -274,28 +272,13 @@ fn shifted(run: &Run, parts: &Outlined, side: Side, offset: f64) -> Result<Vec<E
     Ok(beside)
 }
 
-/// The direction to the right of the way at a node. An arc knows it from its centre; of two, the larger one.
+/// The direction to the right of the way at a node, by the neighbour whose direction is known better.
 fn normal(before: Option<Element>, after: Option<Element>) -> Vector {
-    let radius = |element: Option<Element>| element.and_then(|e| e.radius()).unwrap_or(0.0);
+    let known = |element: Option<Element>| element.as_ref().map_or(0.0, size);
     let right = |heading: Vector| Vector::new(heading.y, -heading.x);
-    let leaving = before.map(|e| e.heading_at_end());
-    let entering = after.map(|e| e.heading_at_start());
-    let heading = match (leaving, entering) {
-        (Some(a), Some(b)) if radius(before) == radius(after) => {
-            let both = a + b;
-            both * (2.0 / both.norm_squared().max(f64::MIN_POSITIVE))
-        }
-        (Some(a), Some(b)) => {
-            if radius(before) > radius(after) {
-                a
-            } else {
-                b
-            }
-        }
-        (Some(only), None) | (None, Some(only)) => only,
-        (None, None) => Vector::zeros(),
-    };
-    right(heading)
+    let leaving = before.map(|e| right(e.heading_at_end()));
+    let entering = after.map(|e| right(e.heading_at_start()));
+    if known(before) > known(after) { leaving.or(entering) } else { entering.or(leaving) }.unwrap_or_default()
 }
 
 fn with_ends(element: Element, start: Point, end: Point) -> Element {

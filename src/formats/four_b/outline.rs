@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::geometry::{Element, Point, Sense, turn};
+use crate::geometry::{Element, Point, Sense, Vector, turn};
 use crate::motion::runs::{Layout, MEET_MM, Run};
 use crate::motion::{Flag, Side};
 
@@ -98,7 +98,41 @@ pub(super) fn flag_of(side: Side, sense: Sense) -> Flag {
 /// corner, to within what whole microns and a rounded drawing explain.
 pub(super) fn corner(before: &Element, after: &Element) -> Option<f64> {
     let turned = turn(before.heading_at_end(), after.heading_at_start());
-    (turned.abs() > CORNER + LATTICE_MM * (1.0 / size(before) + 1.0 / size(after))).then_some(turned)
+    (turned.abs() > allowed(before, after)).then_some(turned)
+}
+
+/// How far the headings of two neighbours may differ that run on, radians.
+fn allowed(before: &Element, after: &Element) -> f64 {
+    CORNER + LATTICE_MM * (1.0 / size(before) + 1.0 / size(after))
+}
+
+/// The first corner of an outline: the place of the element behind it, and the turn.
+///
+/// A piece of a few microns, as closing a contour to the micron takes, has no direction to speak of: what it turns as an
+/// arc is reckoned, and the headings before and behind it are compared.
+pub(super) fn first_corner(elements: &[Element], closed: bool) -> Option<(usize, f64)> {
+    let (mut before, mut turned): (Option<&Element>, f64) = (None, 0.0);
+    let again = if closed { elements.len() } else { 0 };
+    for (n, element) in elements.iter().enumerate().chain(elements.iter().enumerate().take(again)) {
+        if element.length() < SHORT_MM {
+            turned += match element {
+                Element::Arc { sense: Sense::Clockwise, .. } => -element.sweep(),
+                Element::Line { .. } | Element::Arc { .. } => element.sweep(),
+            };
+            continue;
+        }
+        if let Some(before) = before {
+            let (sin, cos) = libm::sincos(turned);
+            let heading = before.heading_at_end();
+            let heading = Vector::new(heading.x * cos - heading.y * sin, heading.x * sin + heading.y * cos);
+            let turned = turn(heading, element.heading_at_start());
+            if turned.abs() > allowed(before, element) {
+                return Some((n, turned));
+            }
+        }
+        (before, turned) = (Some(element), 0.0);
+    }
+    None
 }
 
 /// What is wrong with a corner, as it is told.
@@ -114,12 +148,14 @@ pub(super) const CORNER_HELP: &str =
     "put an arc of at least the offset into the corner, tangent to both sides";
 
 /// The length that fixes an element's direction, mm.
-fn size(element: &Element) -> f64 {
+pub(super) fn size(element: &Element) -> f64 {
     let length = element.length();
     element.radius().map_or(length, |radius| radius.min(length)).max(f64::MIN_POSITIVE)
 }
 
 /// Headings that differ by less run on, radians: 0.1°. *Guess.*
 const CORNER: f64 = 0.1 * std::f64::consts::PI / 180.0;
+/// A shorter piece has no direction of its own, mm. *Guess.*
+const SHORT_MM: f64 = 0.005;
 /// How far whole microns move one end of an element against the other, mm.
 const LATTICE_MM: f64 = 0.0015;

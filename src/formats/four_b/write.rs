@@ -10,7 +10,7 @@
 //! one. What a 3B program cannot say of stops, ways and remarks, 4B cannot either: see [`crate::formats::three_b::write`].
 
 use super::corners::rounded;
-use super::outline::{CORNER_HELP, Outlined, corner, flag_of, side_of, told};
+use super::outline::{CORNER_HELP, Outlined, corner, first_corner, flag_of, side_of, told};
 use super::{Block, Fourth, Order, Ratio};
 use crate::formats::losses::Losses;
 use crate::formats::three_b::write as three_b;
@@ -171,11 +171,9 @@ impl Writer {
             }
             None => elements.iter().copied().enumerate().collect(),
         };
-        let closing = parts.closed.then(|| (&whole[whole.len() - 1], &whole[0]));
-        for (before, after) in whole.windows(2).map(|pair| (&pair[0], &pair[1])).chain(closing) {
-            if let Some(turned) = corner(&before.1, &after.1) {
-                return Err(refusal(told(turned), motion(after.0).spot, CORNER_HELP));
-            }
+        let drawn: Vec<Element> = whole.iter().map(|piece| piece.1).collect();
+        if let Some((n, turned)) = first_corner(&drawn, parts.closed) {
+            return Err(refusal(told(turned), motion(whole[n].0).spot, CORNER_HELP));
         }
         let offset = offset_on(run, cuts[0].0, self.offset);
         let outside = outside(run, parts, offset);

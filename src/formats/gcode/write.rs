@@ -101,7 +101,7 @@ impl Writer {
 
     /// What stands in the program as a remark, because the dialect has no word for it.
     #[must_use]
-    pub fn losses(&self) -> &Losses {
+    pub fn lost(&self) -> &Losses {
         &self.losses
     }
 }
@@ -134,7 +134,7 @@ impl WriterOfAnyFormat for Writer {
                 if flag.is_some() && !self.flags_told {
                     self.flags_told = true;
                     self.flush(text);
-                    self.losses.add("flag of a 4B block", motion.spot);
+                    self.losses.add("4B flag", motion.spot);
                     self.remark(
                         b"4B marks convex and concave arcs; here the control sees it by itself",
                         text,
@@ -248,8 +248,7 @@ impl Writer {
             self.put(b"G50", motion.block, true);
             return Ok(());
         };
-        // NaN is none either.
-        if !(angle.abs() < 90.0) {
+        if !angle.is_finite() || angle.abs() >= 90.0 {
             return Err(refused(
                 motion.spot,
                 "the wire cannot lean so far",

@@ -476,8 +476,11 @@ mod tests {
             assert!(text.contains("N   1: B5000B0") && text.contains("N  40: B0B5000"), "{text}");
             assert!(text.contains("\nB7000B0B007000GXL1\n") && text.contains("N  41: DD"), "{text}");
         }
-        let (text, writer) =
-            write(Form { numbers: Numbers::All, ..Form::default() }, &read(listing)).unwrap();
+        let (text, writer) = write(
+            Form { numbers: Numbers::All, aim: Aim::One(Model::Rotated), ..Form::default() },
+            &read(listing),
+        )
+        .unwrap();
         assert!(text.contains("N   2: B0B5000B005000GYL2\nN   3: B7000B0"), "{text}");
         assert!(lost(&writer).contains(&("line number", 3)), "{:?}", writer.lost());
         // A header of another format would be no header here.

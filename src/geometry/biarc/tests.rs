@@ -227,6 +227,29 @@ fn what_is_no_curve_is_refused() {
 }
 
 #[test]
+fn a_curve_of_any_size_is_followed_or_refused_in_little_time() {
+    let sizes =
+        [5e-324, 1e-200, 1e-155, 1e-40, 1e-13, 1e-10, 1e-7, 1e-3, 1.0, 1e4, 1e9, 1e16, 1e40, 1e155, 1e300];
+    for a in sizes {
+        for b in sizes {
+            for centre in [0.0, 1e8, 1e150] {
+                let curve = Ellipse::whole(Point::new(centre, 0.0), Vector::new(a, 0.0), Vector::new(0.0, b));
+                for elements in [Elements::Lines, Elements::Biarcs] {
+                    let fit = Fit { tolerance: 0.1, elements, radius_max: 99_999.0 };
+                    match super::fit(&curve, &fit) {
+                        Ok(made) => assert!(made.len() < 100_000, "{a} {b} {centre} {}", made.len()),
+                        Err(
+                            FitError::Far(_) | FitError::Lost(_) | FitError::TooMany | FitError::NotFinite(_),
+                        ) => {}
+                        Err(other) => panic!("{other}"),
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_closed_curve_is_closed_to_the_bit() {
     let ellipse = Ellipse::whole(Point::new(0.1, 0.7), Vector::new(3.0, 1.0), Vector::new(-0.5, 1.5));
     let elements = fit(&ellipse, &Fit::within(0.001)).unwrap();

@@ -77,6 +77,15 @@ impl Walk {
         self.start
     }
 
+    /// The greatest distance of a point of the walk from the start, along an axis; that of the start itself from zero,
+    /// where it is beyond all measure.
+    pub(super) fn reach(&self, curve: &impl Curve) -> f64 {
+        let far = |v: Vector| v.x.abs().max(v.y.abs());
+        let steps = self.stretches.iter().flat_map(|stretch| &stretch.t);
+        let reach = steps.map(|&t| far(curve.point(t) - self.start)).fold(0.0, f64::max);
+        if far(self.start.coords) > super::FAR { far(self.start.coords) } else { reach }
+    }
+
     pub(super) fn stretches(&self) -> impl Iterator<Item = &Stretch> {
         self.stretches.iter()
     }

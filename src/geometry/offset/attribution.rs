@@ -163,7 +163,7 @@ impl Source {
         let Some(sense) = segment.sense() else { return Element::Line { start, end } };
         let piece = &self.pieces[key.number / 2];
         let centre = match piece.bend {
-            Some(bend) if key.is_exact && key.number % 2 == 0 => bend.centre,
+            Some(bend) if key.is_exact && key.number.is_multiple_of(2) => bend.centre,
             _ if key.is_exact => piece.end,
             _ => {
                 let vertex = |p: Point, bulge| PlineVertex::new(p.x, p.y, bulge);

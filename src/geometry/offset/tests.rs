@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::Sense;
+use crate::geometry::{Sense, Vector};
 
 fn p(x: f64, y: f64) -> Point {
     Point::new(x, y)
@@ -204,7 +204,7 @@ fn an_outline_begins_beside_the_contours_beginning() {
         let found = offset(&path, -1.0, Corners::Round).unwrap();
         assert_eq!(found.outlines[0].origins[0], Origin::Element(0));
         let beside = path.elements()[0].heading_at_start();
-        let square_off = path.start() + crate::geometry::Vector::new(beside.y, -beside.x);
+        let square_off = path.start() + Vector::new(beside.y, -beside.x);
         assert!((found.outlines[0].path.start() - square_off).norm() < 1e-9, "{first}");
     }
 }
@@ -230,4 +230,80 @@ fn elements_shorter_than_a_point_do_no_harm() {
         assert!(offset(&dot, 0.1, Corners::Round).is_ok());
         assert!(offset(&dot, -0.1, Corners::Round).is_ok());
     }
+}
+
+#[test]
+fn an_arc_shrunk_to_a_point_vanishes_and_a_full_circle_does_not() {
+    let around = |radius: f64, sweep: f64| {
+        let centre = p(2.0, 0.0);
+        let start = p(2.0 + radius, 0.0);
+        let end = centre + Vector::new(libm::cos(sweep), libm::sin(sweep)) * radius;
+        let arc = Element::Arc { start, end, centre, sense: Sense::CounterClockwise };
+        Path::new(vec![arc, Element::Line { start: end, end: p(9.0, 0.0) }]).unwrap()
+    };
+    let rounded = |path: &Path| offset(path, 0.0, Corners::Round).unwrap().outlines[0].rounded().unwrap();
+    let origins = |path: &Path| rounded(path).origins;
+    // A quarter of a ten-thousandth's radius.
+    assert_eq!(origins(&around(1e-4, 1.5)), [Origin::Element(1)]);
+    assert_eq!(origins(&around(1.0, 1.5)).len(), 2);
+    // Ends a ten-thousandth apart, nearly a whole turn about 1 mm.
+    assert_eq!(origins(&around(1.0, 6.2831)).len(), 2);
+    let circle = rounded(&Path::circle(p(0.0, 0.0), 1.0, Sense::Clockwise));
+    assert!((circle.path.elements()[0].sweep() - std::f64::consts::TAU).abs() < 1e-12);
+}
+
+#[test]
+fn a_scribble_is_told_with_a_hundred_meetings_and_that_there_may_be_more() {
+    // A zigzag of 30 strokes each way, crossed by another: 900 meetings and more.
+    let strokes = |flip: bool| {
+        (0..30).map(move |n| {
+            let (far, along) = (if n % 2 == 0 { 0.0 } else { 40.0 }, f64::from(n) + 5.0);
+            if flip { (far - 0.5, along) } else { (along, far) }
+        })
+    };
+    let nodes: Vec<_> = strokes(false).chain(strokes(true)).collect();
+    let error = offset(&polygon(&nodes), 0.1, Corners::Round).unwrap_err();
+    let Impossible::MeetsItself(meetings) = &error else { panic!("{error}") };
+    assert_eq!(meetings.len(), 100);
+    assert!(error.to_string().ends_with("(and in 99 more places at least)"), "{error}");
+}
+
+#[test]
+fn a_bay_that_faces_a_wall_tells_half_the_way_between_them() {
+    // A slice of a disc: an arc of radius 10 over a chord, 0.835 high, and the wire half as wide in its middle.
+    let height = 10.0 - 84f64.sqrt();
+    let slice = Path::new(vec![
+        Element::Line { start: p(-4.0, 0.0), end: p(4.0, 0.0) },
+        Element::Arc {
+            start: p(4.0, 0.0),
+            end: p(-4.0, 0.0),
+            centre: p(0.0, height - 10.0),
+            sense: Sense::CounterClockwise,
+        },
+    ])
+    .unwrap();
+    for (path, left) in [(slice.clone(), 0.5), (slice.reversed(), -0.5)] {
+        let found = offset(&path, left, Corners::Round).unwrap();
+        let [all] = found.unreached[..] else { panic!("{:?}", found.unreached) };
+        assert!((all.largest - height / 2.0).abs() < 1e-6, "{all:?}");
+        let under = offset(&path, left.signum() * (height / 2.0 - 1e-3), Corners::Round).unwrap();
+        assert_eq!(under.outlines.len(), 1);
+    }
+}
+
+#[test]
+fn an_open_contours_corners_are_sharp_between_its_ends_only() {
+    let path = Path::new(vec![
+        Element::Line { start: p(0.0, 0.0), end: p(5.0, 0.0) },
+        Element::Line { start: p(5.0, 0.0), end: p(5.0, 5.0) },
+        Element::Line { start: p(5.0, 5.0), end: p(9.0, 5.0) },
+        Element::Line { start: p(9.0, 5.0), end: p(9.0, 9.0) },
+    ])
+    .unwrap();
+    let found = offset(&path, -1.0, Corners::Sharp { limit: 1.5 }).unwrap();
+    let ends: Vec<Point> = found.outlines[0].path.elements().iter().map(Element::end).collect();
+    let expected = [p(6.0, -1.0), p(6.0, 4.0), p(10.0, 4.0), p(10.0, 9.0)];
+    assert_eq!(ends.len(), expected.len());
+    assert!(ends.iter().zip(&expected).all(|(a, b)| (a - b).norm() < 1e-9), "{ends:?}");
+    assert!((found.outlines[0].path.start() - p(0.0, -1.0)).norm() < 1e-9);
 }

@@ -5,10 +5,10 @@
 //! - Targets are kept exactly and rounded to the nearest µm, halves away from zero; every motion ends there. A motion
 //!   without length is none and not counted.
 //! - G92 says where the wire stands. G04 waits for nothing, M00 and M01 stop nothing.
-//! - G40 G41 G42 put the wire beside the path (`beside`). `D` but for `D0`, or none, is the offset the control holds.
+//! - G40 G41 G42 put the wire beside the path (`beside`), by the offset that D or H tells (`offsets`).
 //! - M02 and M30 end the program. Subprograms stand behind it, O to M99, and are called by M98 P L: from the first call
 //!   on, nothing is cut until the program's end has been read.
-//! - G50 G51 G52 with T or A, and the words of the list, are passed over and counted. G17, N and O say nothing here.
+//! - G50 G51 G52, T and A with them or under G51 and G52, and the words of the list, are passed over and counted. G17, N and O say nothing here.
 //!   Every other word is the alarm `word`: nothing is ignored in silence.
 //!
 //! Not done: a taper (U, V, T), other planes and axes, work offsets, macros, G28 to G30, scaling, rotation.
@@ -18,6 +18,7 @@
 mod arc;
 mod beside;
 mod call;
+mod offsets;
 mod reading;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -27,11 +28,13 @@ use crate::control::settings::Settings;
 use crate::dialect::gcode::{Line, Word};
 use crate::outline::{Element, Point, Shape, Turn};
 use beside::{Beside, Piece};
+use offsets::Offsets;
+pub use offsets::{NotARegister, Register};
 pub use reading::{ArcCentre, GcodeSettings, IgnoredWords, NotAWord, UnitWithoutPoint};
 
 pub(in crate::control) struct GcodePlan {
     reading: GcodeSettings,
-    offset_um: f64,
+    offsets: Offsets,
     modal: Modal,
     /// Where the program has brought it, from where the wire stood before the first block.
     at: Exact,
@@ -59,6 +62,12 @@ struct Modal {
     inch: bool,
     incremental: bool,
     motion: Option<Course>,
+    /// D or H: which offset.
+    offset: Option<Word>,
+    /// Under G41 and G42: how far the wire is to be to the right of the path, µm.
+    right: Option<f64>,
+    /// Under G51 and G52: the wire would be inclined.
+    tapers: bool,
 }
 
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -90,8 +99,8 @@ struct Said {
     beside: Option<Side>,
     sets_zero: bool,
     ends: bool,
-    /// `D`, if there is one.
-    offset_number: Option<i64>,
+    /// D or H, if it is an offset's number.
+    offset: Option<Word>,
     /// X Y I J R.
     lengths: BTreeMap<char, Word>,
 }
@@ -107,7 +116,7 @@ impl GcodePlan {
     pub(super) fn new(settings: &Settings, [x, y]: [i64; 2]) -> GcodePlan {
         GcodePlan {
             reading: settings.gcode.clone(),
-            offset_um: settings.wire_offset_um,
+            offsets: Offsets::new(settings),
             modal: Modal::default(),
             at: Exact { x: x * MILLIONTHS, y: y * MILLIONTHS },
             zero: Exact::default(),
@@ -209,7 +218,11 @@ impl GcodePlan {
     fn hear(&mut self, line: &Line) -> Result<Said, Fault> {
         let mut said = Said::default();
         let waits = call::says(line, 'G', 4);
-        let tapers = (50..=52).any(|code| call::says(line, 'G', code));
+        let compensates = call::says(line, 'G', 41) || call::says(line, 'G', 42);
+        let inclines = call::says(line, 'G', 51) || call::says(line, 'G', 52);
+        let upright = call::says(line, 'G', 50);
+        let tapers = inclines || upright || self.modal.tapers;
+        self.modal.tapers = inclines || (self.modal.tapers && !upright);
         for word in &line.words {
             match word.letter {
                 'N' | 'O' => {}
@@ -220,7 +233,11 @@ impl GcodePlan {
                         return Err(Fault::new("word", &format!("{word}: {} twice", word.letter)));
                     }
                 }
-                'D' => said.offset_number = word.number.whole(),
+                'D' | 'H' if self.offsets.are_told_by(word, compensates) => {
+                    if said.offset.replace(*word).is_some() {
+                        return Err(Fault::new("word", &format!("{word}: a second offset number")));
+                    }
+                }
                 'G' => self.hear_g(word, &mut said)?,
                 'M' => match word.number.whole() {
                     Some(0 | 1) => {}
@@ -279,18 +296,6 @@ impl GcodePlan {
         *self.passed_over.entry(name).or_default() += 1;
     }
 
-    fn change_side(&mut self, said: &Said, out: &mut Vec<Motion>) -> Result<(), Fault> {
-        let offset = if said.offset_number == Some(0) { 0.0 } else { self.offset_um };
-        let right = match said.beside {
-            None => return Ok(()),
-            Some(Side::None) => return self.beside.finish(out),
-            Some(Side::Left) => -offset,
-            Some(Side::Right) => offset,
-        };
-        // Without an offset the path is cut as it stands.
-        if right == 0.0 && self.beside.is_on() { Ok(()) } else { self.beside.start(right) }
-    }
-
     fn set_zero(&mut self, said: &Said) -> Result<(), Fault> {
         if !self.beside.is_on() {
             return Err(Fault::new("compensation", "G92 with the wire beside the path"));
@@ -311,6 +316,9 @@ impl GcodePlan {
             x: self.coordinate(said.lengths.get(&'X'), self.at.x, self.zero.x)?,
             y: self.coordinate(said.lengths.get(&'Y'), self.at.y, self.zero.y)?,
         };
+        if target.x.abs().max(target.y.abs()) > LENGTH_MAX {
+            return Err(Fault::new("number", "the wire would stand beyond 100 m"));
+        }
         let shape = match self.modal.motion {
             None => {
                 return Err(Fault::new("word", "a motion without G00, G01, G02 or G03"));

@@ -146,6 +146,7 @@ impl Machine {
             radius: lengths[R].map(|l| l.value),
             shift: self.shift,
             tolerance: self.dialect.arc_tolerance(self.modal.unit),
+            is_kept: self.dialect.keeps_wrong_arcs,
         };
         arc.element(self.dialect.arc_centre).map_err(|wrong| now.error_of_block(wrong.message, wrong.help))
     }
@@ -201,6 +202,7 @@ impl Machine {
                 radius: None,
                 shift: [0, 0],
                 tolerance: self.dialect.arc_tolerance(self.modal.unit),
+                is_kept: false,
             };
             match arc.element(ArcCentre::FromStart) {
                 Ok(element) => return Ok(Some(element)),

@@ -125,7 +125,7 @@ impl Writer {
         let word: Vec<u8> = word.iter().map(|b| if matches!(b, b'\n' | b'\r') { b' ' } else { *b }).collect();
         let read = if self.is_ended { Read::Otherwise } else { self.read_again(&word) };
         if read == Read::Otherwise {
-            self.losses.add("word without a meaning in the dialect", motion.spot);
+            self.losses.add("foreign word", motion.spot);
             return self.comment(&word, motion, text);
         }
         self.open(text);
@@ -201,5 +201,91 @@ impl Writer {
     fn is_height(&self, word: &Word) -> bool {
         let Role::Length(place) = self.dialect.role(word.letter) else { return false };
         [I, J].contains(&usize::from(place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::formats::Writer as _;
+    use crate::formats::gcode::{Dialect, Layout, Writer};
+    use crate::geometry::{Element, Point};
+    use crate::motion::{Act, Motion, Offset, Side, Travel};
+    use crate::place::Spot;
+
+    fn text(s: &str) -> Box<[u8]> {
+        s.as_bytes().into()
+    }
+
+    fn line(x: f64) -> Act {
+        let (start, end) = (Point::new(x - 1.0, 0.0), Point::new(x, 0.0));
+        Act::Move { travel: Travel::Cut, element: Element::Line { start, end }, upper: None, flag: None }
+    }
+
+    /// What a dialect writes of acts, each with its block, and the kinds of what became a remark.
+    fn written(dialect: &str, layout: Layout, acts: Vec<(u64, Act)>) -> (String, Vec<&'static str>) {
+        let mut writer = Writer::with_layout(Dialect::named(dialect).unwrap().unwrap(), layout);
+        let mut out = Vec::new();
+        for (block, act) in acts {
+            let spot = Spot { line: block, ..Spot::default() };
+            writer.write(&Motion { act, block, spot }, &mut out).unwrap();
+        }
+        writer.finish(&mut out).unwrap();
+        (String::from_utf8(out).unwrap(), writer.lost().iter().map(|l| l.kind).collect())
+    }
+
+    #[test]
+    fn a_word_that_means_something_else_there_becomes_a_remark() {
+        let acts = || {
+            ["T84", "S3", "L0.5", "G60", "#1", "%", "G92 I30. J0.", "H1=5", "@!"]
+                .into_iter()
+                .map(|word| (1, Act::Word(text(word))))
+                .chain([(2, line(1.0))])
+                .collect()
+        };
+        let (fanuc, lost) = written("fanuc", Layout::default(), acts());
+        let expected = "(T84)\nG21 G90\nS3 (L0.5)\nG60\n(#1)\n(%)\n(G92 I30. J0.)\nH1=5\n@!\n\
+                        G92 X0.000 Y0.000\nG01 X1.000 Y0.000\nM02\n";
+        assert_eq!(fanuc, expected, "T is a taper, L a centre");
+        assert_eq!(lost, ["foreign word"]);
+        let (sodick, _) = written("sodick", Layout::default(), acts());
+        assert!(sodick.contains("\nT84 S3") || sodick.contains("\nT84\n"), "{sodick}");
+        assert!(sodick.contains("(H1=5)"), "it would set a register: {sodick}");
+        let (charmilles, _) = written("charmilles", Layout::default(), acts());
+        assert!(charmilles.contains("\nG92 I30. J0.\r\n"), "{charmilles}");
+    }
+
+    #[test]
+    fn numbers_skips_and_remarks_stay_with_their_block() {
+        let acts = vec![
+            (1, Act::Header(text("N 10:"))),
+            (1, Act::Comment(text("nothing but this"))),
+            (2, line(1.0)),
+            (3, Act::Header(text("/"))),
+            (3, Act::Header(text("N30"))),
+            (3, Act::Comment(text("behind"))),
+            (3, line(2.0)),
+            (4, Act::Comment(text("by itself"))),
+            (5, Act::Header(text("Start Point = 0, 0"))),
+        ];
+        let (told, lost) = written("generic", Layout::default(), acts);
+        let expected = "N10 G21 G90 (nothing but this)\nG92 X0.000 Y0.000\nG01 X1.000 Y0.000\n\
+                        /N30 G01 X2.000 Y0.000 (behind)\n(by itself)\n(Start Point = 0, 0)\nM02\n";
+        assert_eq!(told, expected);
+        assert_eq!(lost, ["header line"]);
+    }
+
+    #[test]
+    fn an_offset_that_is_a_number_is_keyed_into_a_named_register_or_refused() {
+        let offset = Offset::On { side: Side::Left, distance: Some(0.11), register: None };
+        let acts = || vec![(1, Act::Offset(offset)), (2, line(1.0))];
+        let layout = Layout { register: Some(3), ..Layout::default() };
+        let expected = "G21 G90\n(D3 = 0.110 MM)\nG92 X0.000 Y0.000\nG41 D3 G01 X1.000 Y0.000\nM02\n";
+        assert_eq!(written("generic", layout, acts()).0, expected);
+        let mut writer = Writer::new(Dialect::generic().unwrap());
+        let motion = Motion { act: Act::Offset(offset), block: 1, spot: Spot::default() };
+        let refused = writer.write(&motion, &mut Vec::new()).unwrap_err();
+        assert_eq!(refused.message, "the dialect has no word for this offset");
+        assert!(written("integer-um", Layout::default(), acts()).0.contains("G41 D110 G01"));
+        assert!(written("mitsubishi", Layout::default(), acts()).0.contains("H1=0.110\n"));
     }
 }

@@ -43,20 +43,9 @@ impl Beside {
         matches!(self, Beside::On)
     }
 
-    /// G41, G42, with an offset: positive to the right.
-    pub(super) fn start(&mut self, right: f64) -> Result<(), Fault> {
-        match *self {
-            Beside::On | Beside::Leaving => *self = Beside::Starting { right },
-            Beside::Starting { right: held }
-            | Beside::Leading { right: held, .. }
-            | Beside::Along { right: held, .. } => {
-                // Told again what it was told already.
-                if held != right {
-                    return Err(Fault::new("compensation", "the side or the offset changes without G40"));
-                }
-            }
-        }
-        Ok(())
+    /// G41, G42 after G40, with an offset: positive to the right.
+    pub(super) fn start(&mut self, right: f64) {
+        *self = Beside::Starting { right };
     }
 
     /// G40: what waits is cut to its own end.

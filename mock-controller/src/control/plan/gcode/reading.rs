@@ -1,9 +1,10 @@
 //! How a control reads G-code: what the manuals leave to its parameters.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::str::FromStr;
 
+use super::Register;
 use crate::dialect::gcode::Word;
 
 /// What G-code means on this control, where makers differ.
@@ -17,6 +18,9 @@ pub struct GcodeSettings {
     pub block_skip: bool,
     /// Words that are passed over, and counted; every other word that is not acted on is the alarm `word`.
     pub ignored_words: IgnoredWords,
+    /// The offsets keyed in by number, µm, not negative. Default: none; then every D and H, where it is an offset's
+    /// number, but D0 and H0, is the wire offset.
+    pub offset_registers: BTreeMap<Register, f64>,
 }
 
 /// What I and J are counted from.
