@@ -20,7 +20,10 @@ pub(super) fn load(name: Option<&str>, done: &str) -> Result<Dialect, Failure> {
         let help = crate::keys::nearest(name, &known).unwrap_or_default();
         return Err(Failure::new(Exit::Usage, format!("there is no dialect `{name}`")).help(help));
     }
-    let text = std::fs::read_to_string(name)
-        .map_err(|error| Failure::new(Exit::Profile, format!("cannot read {name}: {error}")))?;
+    let text = std::fs::read_to_string(name).map_err(|error| {
+        let known = BUILT_IN.map(|(name, _)| name).join(", ");
+        Failure::new(Exit::Profile, format!("cannot read {name}: {error}"))
+            .help(format!("name a dialect file, or one of {known}"))
+    })?;
     Dialect::parse(&text).map_err(|error| Failure::keys(Exit::Profile, name, error))
 }
