@@ -110,11 +110,7 @@ fn tabs_are_left_by_the_first_pass_and_cut_last() {
         // 3B begins in the start hole, (0, -3.1), G-code at the origin and goes there.
         let up = if stop == "D" { 3100 } else { 0 };
         let is_in_tab =
-<<<<<<< HEAD
-            |[x, y]: [i64; 2]| (39_000..41_000).contains(&x) && (10_150..11_850).contains(&(y - up));
-=======
             |[x, y]: [i64; 2]| (40_090..40_105).contains(&x) && (10_150..11_850).contains(&(y - up));
->>>>>>> e2e
         assert!(!before.pulses.iter().any(|&place| is_in_tab(place)), "{}", run.stdout);
         assert!(whole.pulses.iter().any(|&place| is_in_tab(place)), "{}", run.stdout);
         let [left, _, _, top] = whole.extents();
