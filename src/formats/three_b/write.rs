@@ -478,7 +478,7 @@ mod tests {
         }
         let (text, writer) =
             write(Form { numbers: Numbers::All, ..Form::default() }, &read(listing)).unwrap();
-        assert!(text.contains("N   2: B0B5000B005000GYL2\nN   3: B7000B0"), "{text}");
+        assert!(text.contains("\nN   2: B1B5000") && text.contains("\nN   3: B6999B0"), "{text}");
         assert!(lost(&writer).contains(&("line number", 3)), "{:?}", writer.lost());
         // A header of another format would be no header here.
         let foreign = [motion(Act::Header(b"O1234".as_slice().into()))];
