@@ -150,6 +150,15 @@ fn a_comment_in_gbk_is_kept_as_bytes_and_utf_16_is_named() {
     let mut reader = Reader::new(&b"(\xc1\xe3\xbc\xfe)B1B0B1GXL1"[..]);
     assert_eq!(reader.next_entry().unwrap(), Some(Entry::Comment));
     assert_eq!(reader.text(), b"\xc1\xe3\xbc\xfe");
+    // A form feed at the end of a line is no blank between entries, so it belongs to what it stands behind.
+    for (text, kept) in
+        [(&b"; page\x0c\nB1B0B1GXL1"[..], &b" page\x0c"[..]), (b"a = 1\x0b\r\nB1B0B1GXL1", b"a = 1\x0b")]
+    {
+        let mut reader = Reader::new(text);
+        assert!(matches!(reader.next_entry(), Ok(Some(Entry::Comment | Entry::Header))));
+        assert_eq!(reader.text(), kept);
+        assert!(matches!(reader.next_entry(), Ok(Some(Entry::Item(Item::Block(_))))));
+    }
     for bytes in [&b"\xFF\xFEB\x001\x00"[..], b"\xFE\xFF\x00B\x001", b"\xFF\xFE"] {
         let refused = Reader::new(bytes).next_entry().unwrap_err().to_string();
         assert!(refused.contains("UTF-16"), "{refused}");

@@ -51,9 +51,11 @@ impl<R: io::Read> Reader<R> {
         Entry::Comment
     }
 
-    /// Where the line's words end.
+    /// Where the line's words end: before the blanks that are passed over between entries, and no others.
     fn line_end(&self) -> usize {
-        self.at + self.pieces.piece()[self.at..].trim_ascii_end().len()
+        let rest = &self.pieces.piece()[self.at..];
+        let last = rest.iter().rposition(|b| !matches!(b, b' ' | b'\t' | b'\r' | b'\n'));
+        self.at + last.map_or(0, |last| last + 1)
     }
 
     /// `N 12:` of a listing.
