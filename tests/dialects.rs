@@ -1,5 +1,7 @@
 //! Every sample program of a dialect, read, against what it cuts: `tests/data/dialects`.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::Path;

@@ -2,6 +2,8 @@
 //!
 //! It prints what its interpreter would have a machine do, in the coordinates of the program, with four decimals.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::process::Command;
