@@ -72,7 +72,7 @@ class Any:
         return self.random.choice([0, self.number(-3, 3), 1, -1])
 
     def controls(self, least):
-        return [self.point() for _ in range(self.random.randint(least, 9))]
+        return [(*self.point(), 0) for _ in range(self.random.randint(least, 9))]
 
     def line(self, into, **attributes):
         into.add_line(self.point(), self.point(), dxfattribs=attributes)
@@ -107,13 +107,15 @@ class Any:
         degree = self.random.randint(2, 5)
         controls = self.controls(degree + 1)
         weights = [self.number(0.3, 4) for _ in controls]
-        what = self.random.randint(0, 3)
+        what = self.random.randint(0, 4)
         if what == 0:
             into.add_open_spline(controls, degree=degree, dxfattribs=attributes)
         elif what == 1:
             into.add_rational_spline(controls, weights, degree=degree, dxfattribs=attributes)
         elif what == 2:
-            into.add_closed_spline(controls, degree=degree, dxfattribs=attributes)
+            into.add_spline(dxfattribs=attributes).set_closed(controls, degree=degree)
+        elif what == 3:
+            into.add_spline(dxfattribs=attributes).set_closed_rational(controls, weights, degree=degree)
         else:
             into.add_cad_spline_control_frame(self.controls(4), dxfattribs=attributes)
 
