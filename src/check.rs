@@ -12,6 +12,7 @@
 //! It reads no file and prints nothing; `docs/check.md` lists every code with its tolerance.
 
 pub mod contours;
+pub mod wire;
 
 mod closure;
 pub mod crossing;
@@ -39,6 +40,7 @@ pub use limits::Format;
 pub use models::ModelAccount;
 pub use restart::RestartPoint;
 pub use travel::Travel;
+pub use wire::Looked;
 
 /// Something found.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,6 +130,7 @@ pub struct Check {
     taper: taper::Tapers,
     tape: Option<tape::Characters>,
     travel: travel::Reach,
+    wire: wire::Wire,
 }
 
 /// The passes that look at contours.
@@ -170,6 +173,8 @@ pub struct Report {
     pub blocks: u64,
     /// Whether something could not be read, so that nothing was checked but syntax from there on.
     pub unreadable: bool,
+    /// Whether the wire's own path was looked at.
+    pub wire: wire::Looked,
     /// For 3B: what each model of the control would do.
     pub models: Option<[ModelAccount; 4]>,
     /// The blocks at which a job can be taken up, where they were asked for, and how many more there are.
@@ -201,6 +206,7 @@ impl Check {
             taper: taper::Tapers::new(settings.taper_max),
             tape: settings.tape.map(tape::Characters::new),
             travel: travel::Reach::new(settings.travel),
+            wire: wire::Wire::default(),
         }
     }
 
@@ -211,7 +217,11 @@ impl Check {
             return;
         }
         let ledger = &mut self.ledger;
-        let mut tell = |finding| ledger.add(finding);
+        let wire = &mut self.wire;
+        let mut tell = |finding| {
+            wire.note(&finding);
+            ledger.add(finding);
+        };
         let by_contour = &mut self.by_contour;
         let drift = by_contour.models.see(motion, block, &mut tell);
         self.limits.see(motion, block, &mut tell);
@@ -227,14 +237,26 @@ impl Check {
         self.contours.see(motion, state, drift, &mut |run| by_contour.see(&run, &mut tell));
     }
 
+    /// Takes what the control makes of the program by its own offset, where that is known.
+    pub fn see_wire(&mut self, seen: &wire::Seen<'_>) {
+        if !self.unreadable && !self.syntax_only {
+            let ledger = &mut self.ledger;
+            self.wire.see(seen, &mut |finding| ledger.add(finding));
+        }
+    }
+
     /// Takes a text as it goes to the control, with the block it belongs to and where it stands.
     pub fn see_text(&mut self, text: &[u8], block: u64, spot: Spot) {
         if let Some(tape) = &mut self.tape
             && !self.syntax_only
         {
-            let ledger = &mut self.ledger;
-            tape.see(text, block, spot, &mut |finding| ledger.add(finding));
+            tape.see(text, block, spot);
         }
+    }
+
+    /// Takes what was found by whoever read the program.
+    pub fn add(&mut self, finding: Finding) {
+        self.ledger.add(finding);
     }
 
     /// Takes what a reader could not read, and says whether it is worth going on.
@@ -268,6 +290,11 @@ impl Check {
             self.modal.finish(&mut tell);
             by_contour.models.finish(&mut tell);
             self.travel.finish(&mut tell);
+            self.wire.finish(&mut tell);
+        }
+        if let Some(tape) = &self.tape {
+            let ledger = &mut self.ledger;
+            tape.finish(&mut |finding| ledger.add(finding));
         }
         let (errors, warnings) = self.ledger.counts();
         let (findings, more) = self.ledger.finish();
@@ -280,6 +307,7 @@ impl Check {
             warnings,
             blocks: self.blocks,
             unreadable: self.unreadable,
+            wire: self.wire.looked(),
             models: self.by_contour.models.account(),
             restart_points,
             more_restart_points,

@@ -13,9 +13,11 @@ macro_rules! say {
 
 mod check;
 mod connection;
+mod convert;
 #[cfg(feature = "demo")]
 mod demo;
 mod dialects;
+mod drawing;
 mod failure;
 mod feeding;
 mod generate;
@@ -23,8 +25,11 @@ mod jobs;
 mod kind;
 mod machines;
 mod motions;
+mod output;
+mod plan;
 mod plot;
 mod question;
+mod registers;
 mod resume;
 mod screen;
 mod send;
@@ -51,6 +56,7 @@ enum Command {
     #[cfg(feature = "demo")]
     Demo(demo::Options),
     Generate(generate::Options),
+    Convert(Box<convert::Options>),
     Check(check::Options),
     Plot(plot::Options),
     Send(send::Options),
@@ -76,6 +82,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "demo")]
         Command::Demo(options) => demo::run(&options),
         Command::Generate(options) => generate::run(options),
+        Command::Convert(options) => convert::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Plot(options) => plot::run(&options),
         Command::Send(options) => send::run(options),

@@ -15,7 +15,9 @@
 //! It does not read drawings, measure anything or know where its points come from. Letters are single strokes, as an
 //! engraver cuts them, so no font is needed on the machine that draws or on the one that looks.
 
+pub mod contours;
 pub mod dxf;
+pub mod finding;
 
 mod extent;
 mod outline;

@@ -5,9 +5,12 @@
 //! on every platform.
 
 pub mod biarc;
+pub mod curve;
+pub mod ellipse;
 mod measure;
 pub mod offset;
 pub mod path;
+pub mod spline;
 
 pub use measure::turn;
 pub use path::Path;

@@ -8,6 +8,7 @@
 //!
 //! How blocks are spelled is `formats`; where a control really stands after them is `interpolator`.
 
+pub mod lead;
 pub mod reverse;
 pub mod runs;
 

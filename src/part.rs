@@ -7,6 +7,7 @@ pub mod file;
 
 use std::sync::Arc;
 
+use crate::formats::gcode::Dialect;
 pub use crate::formats::three_b::StopWord;
 use crate::formats::three_b::Style;
 use crate::geometry::{Element, Point};
@@ -29,6 +30,29 @@ pub enum Rounding {
     PerBlock,
 }
 
+/// The format of a part's program.
+#[derive(Clone, Debug, Default)]
+pub enum Format {
+    /// 3B, rounded as the part says.
+    #[default]
+    ThreeB,
+    /// 4B: the outline, with flags for an offset that is keyed in.
+    FourB,
+    /// G-code of a dialect.
+    Gcode(Arc<Dialect>),
+}
+
+impl PartialEq for Format {
+    /// Dialects are the same by name.
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::ThreeB, Self::ThreeB) | (Self::FourB, Self::FourB) => true,
+            (Self::Gcode(a), Self::Gcode(b)) => a.name == b.name,
+            _ => false,
+        }
+    }
+}
+
 /// A part with all its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
@@ -44,6 +68,8 @@ pub struct Part {
     pub lead_in: LeadIn,
     /// How many times the outline is cut.
     pub repeat: u64,
+    /// What the program is written in.
+    pub format: Format,
     /// How blocks are rounded.
     pub rounding: Rounding,
     /// Which controls closed-loop rounding serves.
@@ -66,6 +92,7 @@ impl Default for Part {
             trim: Trim::Refuse,
             lead_in: LeadIn::Centre,
             repeat: 1,
+            format: Format::ThreeB,
             rounding: Rounding::ClosedLoop,
             aim: Aim::Any,
             stop_word: StopWord::DD,

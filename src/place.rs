@@ -23,7 +23,7 @@ pub struct Place {
     pub column: u64,
     /// Offset from the start of the source, in bytes.
     pub byte: u64,
-    /// The line, or the part of a long line round the place; bytes that are not printable ASCII are shown as a full stop.
+    /// The line, or the part of a long line round the place, at most 70 bytes; bytes that are not printable ASCII are shown as a full stop.
     pub excerpt: String,
     /// Where in `excerpt` the caret goes, in bytes.
     pub caret: usize,
@@ -106,9 +106,9 @@ impl fmt::Display for Place {
 }
 
 /// Bytes of a long line shown before the place.
-const EXCERPT_BEFORE: usize = 60;
+const EXCERPT_BEFORE: usize = 40;
 /// Bytes of a long line shown from the place on.
-const EXCERPT_AFTER: usize = 40;
+const EXCERPT_AFTER: usize = 30;
 
 #[cfg(test)]
 mod tests {

@@ -11,14 +11,16 @@ mod layer;
 mod marks;
 mod simulated;
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::check::contours::{Contours, Run};
+use crate::check::contours::{Contours, Held, Run};
 use crate::drawing::{Align, Class, Extent, Outline, Picture, Shape, Sketch};
 use crate::formats::three_b::Block;
 use crate::geometry::{Element, Point, Vector};
 use crate::interpolator::{Fault, Model};
-use crate::motion::{Act, Motion, Travel};
+use crate::motion::{Act, Motion, Stop, Travel};
+use crate::units::Micrometres;
 
 use layer::Layer;
 use marks::{Mark, Marks};
@@ -47,11 +49,43 @@ pub struct Plot {
     rapid: Layer,
     /// The wire's own path, where it is not the programmed one.
     wire: Option<Layer>,
-    starts: Vec<Point>,
-    more_starts: u64,
+    starts: Starts,
+    /// The next cut begins a chain.
     is_fresh: bool,
+    /// The chain was begun behind a pause of a 3B program.
+    is_behind_pause: bool,
     extent: Option<Extent>,
     simulation: Option<Simulation>,
+    /// The program is 3B or 4B.
+    has_blocks: bool,
+}
+
+/// Where the wire is threaded, each place once.
+#[derive(Debug, Default)]
+struct Starts {
+    marked: Vec<Point>,
+    seen: HashSet<(i64, i64)>,
+    /// The last one is new.
+    is_new: bool,
+}
+
+impl Starts {
+    fn add(&mut self, at: Point) {
+        let cell = [at.x, at.y].map(|v| Micrometres::nearest(v).0).into();
+        self.is_new = self.marked.len() < STARTS_MAX && self.seen.insert(cell);
+        if self.is_new {
+            self.marked.push(at);
+        }
+    }
+
+    /// Takes back the last one, which turned out to be none.
+    fn take_back(&mut self, at: Point) {
+        if self.is_new && self.marked.last() == Some(&at) {
+            self.marked.pop();
+            self.seen.remove(&[at.x, at.y].map(|v| Micrometres::nearest(v).0).into());
+            self.is_new = false;
+        }
+    }
 }
 
 /// The cuts as they are sorted out.
@@ -100,11 +134,12 @@ impl Plot {
             },
             rapid: Layer::new(),
             wire: None,
-            starts: Vec::new(),
-            more_starts: 0,
+            starts: Starts::default(),
             is_fresh: true,
+            is_behind_pause: false,
             extent: None,
             simulation: options.simulated.map(Simulation::new),
+            has_blocks: false,
             options,
         }
     }
@@ -119,64 +154,92 @@ impl Plot {
             Act::Move { travel, element, .. } => {
                 self.reach(element);
                 if self.is_fresh && *travel == Travel::Cut {
-                    self.start(element.start());
+                    self.starts.add(element.start());
                 }
                 self.is_fresh = *travel == Travel::Rapid;
                 if *travel == Travel::Rapid {
+                    self.is_behind_pause = false;
                     self.rapid.add(element);
                 }
             }
-            Act::Stop(_) => self.is_fresh = true,
             Act::Offset(_)
             | Act::Taper(_)
+            | Act::Stop(_)
             | Act::Dwell(_)
             | Act::Word(_)
             | Act::Unknown(_)
             | Act::Comment(_)
             | Act::Header(_) => {}
         }
-        let Self { contours, cuts, .. } = self;
-        contours.see(motion, Default::default(), Default::default(), &mut |run| cuts.draw(&run));
+        if let (Act::Move { travel: Travel::Cut, element, .. }, Some(simulation), Some(block)) =
+            (&motion.act, &mut self.simulation, block)
+        {
+            simulation.see(block, element, motion.block)?;
+        }
+        self.sort_out(motion);
         if let Act::Move { travel: Travel::Cut, element, .. } = &motion.act {
             // The cut with which a chain is given up is not among those handed over.
-            if contours.is_given_up() {
-                cuts.contour(element, motion.block, left(element));
-            }
-            if let (Some(simulation), Some(block)) = (&mut self.simulation, block) {
-                simulation.see(block, element, motion.block)?;
+            if self.contours.is_given_up() {
+                self.cuts.contour(element, motion.block, left(element));
             }
         }
+        // G-code says with a rapid move where the wire is threaded again; 3B has only the pause.
+        self.has_blocks |= block.is_some();
+        if matches!(motion.act, Act::Stop(Stop::Pause | Stop::End)) && self.has_blocks {
+            (self.is_fresh, self.is_behind_pause) = (true, motion.act == Act::Stop(Stop::Pause));
+        }
         Ok(())
+    }
+
+    /// Draws what has become clear of the chains with a motion.
+    fn sort_out(&mut self, motion: &Motion) {
+        let is_jump = self.is_behind_pause && motion.act == Act::Stop(Stop::Pause);
+        let Self { contours, cuts, simulation, rapid, starts, .. } = self;
+        contours.see(motion, Default::default(), Default::default(), &mut |run| {
+            match run {
+                // One straight way between two pauses: 3B's way to say what G00 says.
+                Run::Rest { held: [Held { element: line @ Element::Line { .. }, .. }], rings: 0, .. }
+                    if is_jump =>
+                {
+                    rapid.add(line);
+                    starts.take_back(line.start());
+                    if let Some(simulation) = simulation {
+                        simulation.forget_run();
+                    }
+                }
+                run => cuts.draw(&run),
+            }
+            if let Some(simulation) = simulation {
+                simulation.end_run();
+            }
+        });
     }
 
     /// Takes a motion of the wire's own path, where the control sets it off the programmed one.
     pub fn see_wire(&mut self, motion: &Motion) {
         if let Act::Move { travel: Travel::Cut, element, .. } = &motion.act {
-            self.reach(element);
             self.wire.get_or_insert_with(Layer::new).add(element);
         }
+    }
+
+    /// Takes back what [`Self::see_wire`] was given: the programmed path is the wire's after all, or the best that is known.
+    pub fn forget_wire(&mut self) {
+        self.wire = None;
     }
 
     fn reach(&mut self, element: &Element) {
         self.extent = Some(grown(self.extent, element));
     }
 
-    fn start(&mut self, at: Point) {
-        if self.starts.last() == Some(&at) {
-            return;
-        }
-        if self.starts.len() < STARTS_MAX {
-            self.starts.push(at);
-        } else {
-            self.more_starts += 1;
-        }
-    }
-
     /// Takes the end of the program, and draws.
     pub fn finish(mut self) -> Plotted {
         let Self { contours, cuts, .. } = &mut self;
         contours.finish(&mut |run| cuts.draw(&run));
-        let (extent, part) = (self.extent, self.cuts.part);
+        let part = self.cuts.part;
+        let extent = match (self.extent, self.wire.as_ref().and_then(Layer::extent)) {
+            (Some(programmed), Some(wire)) => Some(programmed.united(wire)),
+            (programmed, wire) => programmed.or(wire),
+        };
         let nothing = Extent { min: [0.0; 2], max: [0.0; 2] };
         let seen = extent.unwrap_or(nothing);
         let pen = seen.width().max(seen.height()).max(0.001) / PART_SPAN;
@@ -201,9 +264,11 @@ impl Plot {
             }
         }
         page.lines(Class::Rapid, rapid, None);
-        page.lines(Class::Nominal, nominal, Some(NOMINAL_PEN));
-        page.lines(Class::LeadIn, lead_in, Some(NOMINAL_PEN));
-        let model = self.simulation.as_ref().map(Simulation::model);
+        let pen = self.simulation.as_ref().filter(|s| s.pulses() > 0).map_or(ALONE_PEN, |_| NOMINAL_PEN);
+        page.lines(Class::Nominal, nominal, Some(pen));
+        page.lines(Class::LeadIn, lead_in, Some(pen));
+        let simulated = self.simulation.as_ref().filter(|simulation| simulation.pulses() > 0);
+        let model = simulated.map(Simulation::model);
         let deviation = self.simulation.as_ref().and_then(Simulation::largest);
         let pulses = self.simulation.as_ref().map_or(0, Simulation::pulses);
         if let Some(simulation) = self.simulation {
@@ -213,7 +278,7 @@ impl Plot {
         }
         page.heads(&self.cuts.heads);
         page.numbers(&self.cuts.numbers);
-        page.starts(&self.starts, self.more_starts);
+        page.starts(&self.starts);
         if extent.is_some() {
             page.dimensions();
         }
@@ -247,6 +312,7 @@ impl Cuts {
                 for held in ring {
                     self.contour(&held.element, held.block, left(&held.element) * outside);
                 }
+                self.nominal.end_run();
             }
             // Without a ring in its chain a cut is what is to be cut.
             Run::Rest { held, rings: 0, .. } | Run::TooLong(held) => {
@@ -326,7 +392,7 @@ impl Page {
     }
 
     fn heads(&mut self, heads: &Marks) {
-        for mark in heads.kept() {
+        for mark in heads.clear_of_each_other(4.0 * HEAD_HALF * self.pen) {
             // The head lies over the middle of its block.
             let tip = mark.at + mark.heading * (HEAD_HALF * self.pen);
             self.sketch.draw(Shape::head(Class::Direction, [tip.x, tip.y], [mark.heading.x, mark.heading.y]));
@@ -342,13 +408,11 @@ impl Page {
         }
     }
 
-    fn starts(&mut self, starts: &[Point], more: u64) {
-        for at in starts {
+    fn starts(&mut self, starts: &Starts) {
+        for at in &starts.marked {
             self.sketch.draw(Shape::start([at.x, at.y]));
         }
-        if let [only] = starts
-            && more == 0
-        {
+        if let [only] = starts.marked[..] {
             let text = Shape::text(Class::Label, [only.x, only.y], Align::Centre, "start");
             self.sketch.draw(text.nudged([0.0, -5.0]));
         }
@@ -413,6 +477,9 @@ impl Page {
 
 /// The pen for what is programmed: broad enough to be seen on both sides of the cut on top.
 const NOMINAL_PEN: f64 = 0.5;
+
+/// The same with no cut on top.
+const ALONE_PEN: f64 = 0.25;
 
 /// The pen for the simulated cut.
 const CUT_PEN: f64 = 0.14;

@@ -41,6 +41,8 @@ pub struct Profile {
     pub tape: Tape,
     /// How much the control may have accepted and not executed.
     pub buffer_bytes: u64,
+    /// The dialect of G-code the control speaks, where the profile says: a built-in one or a file.
+    pub dialect: Option<String>,
     /// How far the machine travels, where the profile says.
     pub travel: Travel,
     /// The most the machine tilts its wire, degrees, where the profile says.
@@ -141,6 +143,7 @@ impl Profile {
                 trailer: String::new(),
             },
             buffer_bytes: 0,
+            dialect: None,
             travel: Travel::default(),
             taper_max_degrees: None,
         };
@@ -253,6 +256,7 @@ impl Profile {
         given("buffer_bytes", buffer.is_some());
         self.buffer_bytes = buffer.unwrap_or(self.buffer_bytes);
 
+        self.dialect = control.text("dialect")?.map(str::to_owned).or(self.dialect.take());
         // What a profile does not say of the machine itself is not assumed: it is then not checked.
         self.travel.x = within(travel, "x_mm", 100_000.0)?.or(self.travel.x);
         self.travel.y = within(travel, "y_mm", 100_000.0)?.or(self.travel.y);
@@ -319,7 +323,7 @@ fn within(section: &Section<'_>, key: &'static str, most: f64) -> Result<Option<
 }
 
 /// Every key of a profile with its section.
-const KEYS: [(&str, &str); 17] = [
+const KEYS: [(&str, &str); 18] = [
     ("machine", "name"),
     ("link", "baud"),
     ("link", "framing"),
@@ -334,6 +338,7 @@ const KEYS: [(&str, &str); 17] = [
     ("tape", "leader"),
     ("tape", "trailer"),
     ("control", "buffer_bytes"),
+    ("control", "dialect"),
     ("travel", "x_mm"),
     ("travel", "y_mm"),
     ("taper", "max_degrees"),

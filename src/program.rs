@@ -1,17 +1,21 @@
 //! A program as the sender sees it: lines of text pulled one at a time, whatever they are made from.
 //!
-//! A part is generated, a 3B file is read; neither is ever held. A program is pulled once; to send it again it is made
+//! A part is generated, a program is read; neither is ever held. A program is pulled once; to send it again it is made
 //! again, and [`Segments`] tells whether it is still the same.
+
+pub mod verbatim;
+pub mod written;
 
 use std::io::BufRead;
 
 use thiserror::Error;
 
-use crate::formats::ReadError;
 use crate::formats::three_b::read::{Item, Reader};
-use crate::formats::three_b::{Block, Style};
-use crate::part::Prepared;
+use crate::formats::three_b::{self, Block, Style};
+use crate::formats::{ReadError, WriteError, four_b, gcode};
+use crate::part::{Format, Part, Prepared};
 use crate::rounding::Made;
+use written::Written;
 
 /// A line of program text.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +44,9 @@ pub enum ProgramError {
     /// The source is not a program.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// The format cannot say it.
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 /// Something lines can be pulled from.
@@ -52,7 +59,24 @@ pub trait Program: Send {
     fn pull(&mut self, text: &mut Vec<u8>) -> Result<Option<Line>, ProgramError>;
 }
 
-/// A part, generated.
+/// The program of a part, in the part's format.
+#[must_use]
+pub fn generated(prepared: &Prepared) -> Box<dyn Program> {
+    match &prepared.part().format {
+        Format::ThreeB => Box::new(Generated::new(prepared)),
+        Format::FourB => {
+            let Part { aim, stop_word: end, style, .. } = *prepared.part();
+            let plain = three_b::write::Form { style, aim, end, ..three_b::write::Form::default() };
+            let form = four_b::write::Form { plain, ..four_b::write::Form::default() };
+            Box::new(Written::new(prepared.motions(), four_b::write::Writer::new(form)))
+        }
+        Format::Gcode(dialect) => {
+            Box::new(Written::new(prepared.motions(), gcode::Writer::new((**dialect).clone())))
+        }
+    }
+}
+
+/// A part, generated in 3B.
 pub struct Generated {
     blocks: Box<dyn Iterator<Item = Made> + Send>,
     style: Style,
@@ -224,7 +248,6 @@ fn ends_segment(block: u64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::part::Part;
 
     fn lines(mut program: impl Program) -> Vec<String> {
         let mut lines = Vec::new();

@@ -7,6 +7,8 @@
 mod binary;
 #[path = "cli/listings.rs"]
 mod listings;
+#[path = "cli/looking.rs"]
+mod looking;
 #[path = "cli/messages.rs"]
 mod messages;
 #[path = "cli/part_files.rs"]

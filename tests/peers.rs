@@ -4,6 +4,8 @@
 //! They must be installed, so these tests have a feature of their own: `.ci/run` installs them and runs
 //! `PEER_PYTHON=target/peers/bin/python cargo test --features peers --test peers`. Without them they fail; none is skipped.
 
+#[path = "offset/contours.rs"]
+mod contours;
 #[path = "peers/drawing.rs"]
 mod drawing;
 #[path = "peers/gcode.rs"]

@@ -12,6 +12,8 @@
 mod bench;
 #[path = "pty/faults.rs"]
 mod faults;
+#[path = "pty/formats.rs"]
+mod formats;
 #[path = "pty/kills.rs"]
 mod kills;
 #[path = "pty/own_control.rs"]

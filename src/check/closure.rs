@@ -50,7 +50,9 @@ fn rest(held: &[Held], fresh: usize, rings: u64, tell: &mut impl FnMut(Finding))
     }
     let end = last.element.end();
     let along = last.along() + last.element.length();
-    let nearest = held
+    // Behind a ring the way out need not come back to the way in.
+    let from = if rings > 0 { held.len() - fresh } else { 0 };
+    let nearest = held[from..]
         .iter()
         .map(|node| ((node.element.start() - end).norm(), node))
         .filter(|(gap, node)| *gap <= GAP_MM && along - node.along() >= gap * WAY_PER_GAP)

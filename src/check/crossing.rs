@@ -61,6 +61,12 @@ impl Stretch<'_> {
         if n < self.lead.len() { &self.lead[n] } else { &self.ring[n - self.lead.len()] }
     }
 
+    /// The block of an element, and where it stands.
+    pub(super) fn place(&self, n: usize) -> (u64, Spot) {
+        let held = self.held(n);
+        (held.block, held.spot)
+    }
+
     fn element(&self, n: usize) -> &Element {
         &self.held(n).element
     }

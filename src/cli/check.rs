@@ -13,15 +13,21 @@
 //! Findings go to standard error, the account to standard output; with `--json` both go to standard output as one object.
 //! The exit code is 0 when nothing was found, 3 for errors, 8 for warnings alone. `docs/check.md` lists what is looked at.
 
+use std::cell::RefCell;
+
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
+use super::registers::Registers;
 use super::{machines, print, print_json};
-use crate::check::{Check, Finding, Format, Kept, Report, Settings, Severity};
+use crate::check::{Check, Finding, Format, Kept, Looked, Report, Settings, Severity, wire};
+use crate::drawing::finding as drawing;
 use crate::interpolator::Model;
+use crate::motion::Motion;
+use crate::place::Spot;
 use crate::profile::Profile;
 
 /// Check a program: everything wrong with it in one run, nothing is sent
@@ -31,7 +37,7 @@ pub(super) struct Options {
     #[arg(value_name = "IN")]
     input: String,
     #[command(flatten)]
-    reading: Reading,
+    registers: Registers,
     /// The machine to check against: a built-in profile or a file [default: generic-iso]
     #[arg(long, value_name = "NAME|FILE")]
     machine: Option<String>,
@@ -47,6 +53,8 @@ pub(super) struct Options {
     /// Print the findings as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -62,7 +70,10 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         Some(name) => machines::load(name)?.profile,
         None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
-    let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, Model::Rotated)?;
+    // Wrong arcs are judged here, and so is what stands behind them.
+    let reading =
+        Reading { of_machine: profile.dialect.clone(), keeps_wrong_arcs: true, ..options.reading.clone() };
+    let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {
         print_json(&as_json(&report, options))?;
@@ -73,7 +84,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         for (code, count) in &report.more {
             say!("and {count} more of {code}");
         }
-        print(account(&report, &motions.name, options).as_bytes())?;
+        print(account(&report, &motions.places.name, options).as_bytes())?;
     }
     match (report.errors, report.warnings) {
         (0, 0) => Ok(()),
@@ -99,26 +110,49 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
         restart_points: options.restart_points,
         syntax_only: options.syntax_only,
     });
-    while let Some(motion) = motions.next() {
-        match motion {
-            Ok(motion) => {
-                check.see_text(motions.text(&motion), motion.block, motion.spot);
-                check.see(&motion, motions.block().as_ref());
-            }
-            Err(error) => {
-                if !(check.see_error(&error) && motions.go_on_behind(&error)) {
-                    break;
-                }
-            }
-        }
+    for found in motions.drawn.iter().flat_map(|drawing| &drawing.report) {
+        let severity = match found.severity {
+            drawing::Severity::Fault => Severity::Error,
+            drawing::Severity::Warning => Severity::Warning,
+            // What is as it should be is no finding.
+            drawing::Severity::Note => continue,
+        };
+        let spot = Spot { line: found.line, column: u64::from(found.line > 0), byte: 0 };
+        let (message, help) = (found.to_string(), found.help.clone());
+        check.add(Finding { severity, code: found.code, spot, width: 0, block: 0, message, help });
+    }
+    if motions.kind == Kind::Gcode {
+        let check = RefCell::new(&mut check);
+        let next = || next_of(motions, &mut check.borrow_mut());
+        wire::follow(next, &options.registers.held(), |seen| check.borrow_mut().see_wire(seen));
+    } else {
+        while next_of(motions, &mut check).is_some() {}
     }
     // G-code goes out line by line as it stands.
     motions.lines(|line, block| check.see_text(line.bytes, block, line.spot(0)))?;
     Ok(check.finish())
 }
 
+/// Checks the next motion that can be read.
+fn next_of(motions: &mut Motions, check: &mut Check) -> Option<Motion> {
+    loop {
+        match motions.next()? {
+            Ok(motion) => {
+                check.see_text(motions.text(&motion), motion.block, motion.spot);
+                check.see(&motion, motions.block().as_ref());
+                return Some(motion);
+            }
+            Err(error) => {
+                if !(check.see_error(&error) && motions.go_on_behind(&error)) {
+                    return None;
+                }
+            }
+        }
+    }
+}
+
 fn rendered(finding: &Finding, motions: &mut Motions) -> String {
-    let place = motions.place(finding.spot, finding.width);
+    let place = motions.places.place(finding.spot, finding.width);
     // Without a place in a text the block says where it is.
     let message = match (&place, finding.block) {
         (None, 1..) => format!("block {}: {}", finding.block, finding.message),
@@ -131,7 +165,7 @@ fn rendered(finding: &Finding, motions: &mut Motions) -> String {
     let word = format!("{}[{}]:", finding.severity.name(), finding.code);
     let mut failure = Failure::new(exit, message).called(word);
     if let Some(place) = place {
-        failure = failure.at(&motions.name, place);
+        failure = failure.at(&motions.places.name, place);
     }
     if !finding.help.is_empty() {
         failure = failure.help(finding.help.clone());
@@ -162,6 +196,11 @@ fn as_json(report: &Report, options: &Options) -> serde_json::Value {
         "warnings": report.warnings,
         "blocks": report.blocks,
     });
+    value["wire_path"] = match report.wire {
+        Looked::NoOffset => json!("as programmed"),
+        Looked::Whole => json!("checked"),
+        Looked::Unknown(register) => json!({"unknown_register": register}),
+    };
     if let Some(models) = report.models.filter(|_| !report.unreadable) {
         let models = models.map(|account| {
             json!({
@@ -200,6 +239,11 @@ fn account(report: &Report, name: &str, options: &Options) -> String {
     let mut text = format!("{name}: {}, {verdict}\n", count(report.blocks, "block"));
     if report.unreadable && !options.syntax_only {
         text.push_str("behind what cannot be read only syntax was checked\n");
+    }
+    if let (Looked::Unknown(register), false) = (report.wire, report.unreadable) {
+        text.push_str(&format!(
+            "the wire's own path was not checked: what register {register} holds is not given (--register {register}=MM)\n"
+        ));
     }
     if let Some(models) = report.models.filter(|_| !report.unreadable) {
         for account in models {

@@ -14,6 +14,7 @@ use crate::journal::writer::JournalError;
 use crate::keys::KeyError;
 use crate::link::LinkError;
 use crate::place::Place;
+use crate::program::ProgramError;
 use crate::shapes::cycloid_gear::Impossible;
 
 /// The exit codes of the command line.
@@ -113,6 +114,13 @@ impl Failure {
             ReadError::Program { message, place, help } => {
                 Self::new(Exit::Program, message).at(file, place).help(help)
             }
+        }
+    }
+
+    pub(super) fn program(file: &str, error: ProgramError) -> Self {
+        match error {
+            ProgramError::Read(error) => Self::read(file, error),
+            ProgramError::Write(error) => Self::new(Exit::Program, error.message).help(error.help),
         }
     }
 

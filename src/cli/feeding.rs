@@ -16,7 +16,6 @@ use crate::journal::Record;
 use crate::journal::writer::Journal;
 use crate::link::Link;
 use crate::link::feed::{self, Outcome, Shared, Snapshot};
-use crate::program::ProgramError;
 use crate::protocol::dc_codes::{DcCodes, Settings};
 use crate::protocol::{Protocol, Tally};
 
@@ -36,9 +35,9 @@ pub(super) fn dry_run(source: &Source, from_block: u64) -> Result<(), Failure> {
             Ok(Some(numbered)) if numbered.goes_out_from(from_block) => text.push(b'\n'),
             Ok(Some(_)) => text.truncate(start),
             Ok(None) => break,
-            Err(ProgramError::Read(error)) => {
+            Err(error) => {
                 let _ = out.write_all(&text[..start]);
-                return Err(Failure::read(&source.path, error));
+                return Err(Failure::program(&source.path, error));
             }
         }
         if text.len() >= 1 << 16 {

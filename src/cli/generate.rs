@@ -16,8 +16,10 @@ use clap::Args;
 
 use super::failure::{Exit, Failure};
 use super::{print, source};
-use crate::part::file::{AIMS, DIRECTIONS, GEAR_TEMPLATE, ROUNDINGS, STOP_WORDS};
-use crate::part::{Part, Prepared, aim_named, start_hole};
+use crate::formats::gcode::dialect::BUILT_IN;
+use crate::part::file::{AIMS, DIRECTIONS, FORMATS, GEAR_TEMPLATE, ROUNDINGS, STOP_WORDS, dialect_named};
+use crate::part::{Format, Part, Prepared, Rounding, aim_named, start_hole};
+use crate::program::{self, Counted};
 use crate::rounding::audit::Audit;
 use crate::shapes::cycloid_gear::{LeadIn, Trim};
 
@@ -76,8 +78,11 @@ struct Gear {
     #[arg(long)]
     trim: bool,
     /// Block format [default: 3b]
-    #[arg(long, value_parser = ["3b"])]
+    #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(FORMATS.map(|(w, _)| w)))]
     format: Option<String>,
+    /// The control G-code is for, a built-in dialect [default: generic]
+    #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(BUILT_IN.map(|(w, _)| w)))]
+    dialect: Option<String>,
     /// closed-loop chooses each block from where the control stands; per-block rounds as the paper [default: closed-loop]
     #[arg(long, value_parser = clap::builder::PossibleValuesParser::new(ROUNDINGS.map(|(w, _)| w)))]
     rounding: Option<String>,
@@ -113,8 +118,36 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     for warning in prepared.warnings() {
         say!("warning: {warning}");
     }
+    if prepared.part().format != Format::ThreeB {
+        return write_text(&prepared, std::io::stdout().lock());
+    }
     let audit = write(&prepared, std::io::stdout().lock())?;
     say!("{}", account(&audit, &prepared).trim_end());
+    Ok(())
+}
+
+/// Writes the program in 4B or G-code: its elements as they are designed, with the offset in them.
+fn write_text(prepared: &Prepared, mut out: impl Write) -> Result<(), Failure> {
+    let mut program = Counted::new(program::generated(prepared));
+    let mut text = Vec::with_capacity(CHUNK + 64);
+    loop {
+        let pulled = program.pull(&mut text).map_err(|error| Failure::program("the part", error))?;
+        if pulled.is_some() {
+            text.push(b'\n');
+        }
+        if text.len() >= CHUNK || pulled.is_none() || program.blocks() == FIRST_BLOCKS {
+            out.write_all(&text).and_then(|()| out.flush()).map_err(Failure::output)?;
+            text.clear();
+        }
+        if pulled.is_none() {
+            break;
+        }
+    }
+    say!("{} blocks for {} elements", program.blocks(), prepared.element_count());
+    let part = prepared.part();
+    if part.format == Format::FourB && part.offset != 0.0 {
+        say!("the outline has the offset of {} mm in it: F = 0, or generate it with --offset 0", part.offset);
+    }
     Ok(())
 }
 
@@ -146,12 +179,36 @@ impl Gear {
             ROUNDINGS.iter().find(|(w, _)| word(&self.rounding, w)).map_or(part.rounding, |r| r.1);
         part.stop_word = STOP_WORDS.iter().find(|(w, _)| word(&self.end, w)).map_or(part.stop_word, |s| s.1);
         part.aim = self.interpolator.as_deref().and_then(aim_named).unwrap_or(part.aim);
+        part.format = self.format(&part)?;
         part.lead_in = match self.lead_in.as_deref() {
             None | Some("centre") => LeadIn::Centre,
             Some("none") => LeadIn::None,
             Some(text) => lead_in(text)?,
         };
         Ok(part)
+    }
+
+    fn format(&self, part: &Part) -> Result<Format, Failure> {
+        let wrong = |message: &str, help: &str| Err(Failure::new(Exit::Usage, message).help(help));
+        let format = match (self.format.as_deref(), self.dialect.as_deref()) {
+            (Some("gcode"), dialect) => {
+                if dialect.is_none() {
+                    say!("G-code is written in the dialect generic, for want of another");
+                }
+                let dialect = dialect_named(dialect.unwrap_or("generic"));
+                Format::Gcode(dialect.map_err(|error| Failure::keys(Exit::Ours, "dialect", error))?)
+            }
+            (_, Some(_)) => return wrong("--dialect goes with --format gcode", "leave it out"),
+            (Some("4b"), None) => Format::FourB,
+            (_, None) => Format::ThreeB,
+        };
+        if part.rounding == Rounding::PerBlock && format != Format::ThreeB {
+            return wrong("--rounding per-block goes with 3B", "leave out --rounding or --format");
+        }
+        if part.repeat > 1 && format == Format::FourB {
+            return wrong("4B takes an outline once: it is held whole for its flags", "leave out --repeat");
+        }
+        Ok(format)
     }
 
     /// The first option that was given, by its name.
@@ -170,6 +227,7 @@ impl Gear {
             ("repeat", self.repeat.is_some()),
             ("trim", self.trim),
             ("format", self.format.is_some()),
+            ("dialect", self.dialect.is_some()),
             ("rounding", self.rounding.is_some()),
             ("interpolator", self.interpolator.is_some()),
             ("end", self.end.is_some()),

@@ -65,7 +65,8 @@ impl Kind {
         }
         let metadata = std::fs::metadata(word).map_err(|error| source::unreadable(word, &error))?;
         if metadata.is_dir() {
-            return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program")));
+            let message = format!("{word} is a directory, not a program");
+            return Err(Failure::new(Exit::Program, message).help("name one of the files in it"));
         }
         from.or_else(|| Self::of(word, metadata.is_file())).ok_or_else(|| {
             Failure::new(Exit::Usage, format!("what {word} is cannot be told from its name"))

@@ -2,21 +2,26 @@
 //!
 //! Motions come one at a time; only a drawing is held. A program can be read on behind something that cannot be read: at
 //! the next line, or behind the next block where blocks run together. What comes from standard input or a FIFO is put
-//! aside first, since places are shown by reading again, and a G-code program may call what stands behind its end.
+//! aside, since places are shown by reading again: first, where a program is read on behind an error, and G-code, which may
+//! call what stands behind its end; else block by block as it comes.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek as _, SeekFrom};
+use std::io::{self, BufReader, Read, Seek as _, SeekFrom, Write as _};
 use std::path::Path;
 
 use clap::Args;
 
+use super::dialects;
+use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::source;
+use crate::drawing::dxf::Drawing;
 use crate::formats::ReadError;
 use crate::formats::gcode::{self, Dialect};
 use crate::formats::lines::Line;
 use crate::formats::three_b::{self, Block};
+use crate::geometry::Point;
 use crate::interpolator::Model;
 use crate::motion::{Act, Motion};
 use crate::part::{Part, Prepared};
@@ -29,9 +34,29 @@ pub(super) struct Reading {
     /// What IN is [default: by its name, then by its content; needed for -]
     #[arg(long, value_name = "KIND")]
     pub(super) from: Option<Kind>,
-    /// The control a G-code program is for: a built-in dialect or a dialect file [default: generic]
+    /// The control a G-code program is for: a built-in dialect or a dialect file [default: the machine's, else generic]
     #[arg(long, value_name = "NAME|FILE")]
     pub(super) dialect: Option<String>,
+    /// The dialect of the machine, where it is known and no other is named.
+    #[arg(skip)]
+    pub(super) of_machine: Option<String>,
+    /// Whether arcs whose radii disagree are read as they are.
+    #[arg(skip)]
+    pub(super) keeps_wrong_arcs: bool,
+    #[command(flatten)]
+    pub(super) drawing: drawing::OfDrawing,
+    /// Where the wire enters a drawing.
+    #[arg(skip)]
+    pub(super) starts: Vec<Point>,
+    /// Whether blocks are read as they come, and not on behind what cannot be read.
+    #[arg(skip)]
+    pub(super) as_they_come: bool,
+}
+
+impl Reading {
+    fn dialect(&self) -> Option<&str> {
+        self.dialect.as_deref().or(self.of_machine.as_deref())
+    }
 }
 
 /// What of a part is wanted.
@@ -45,14 +70,38 @@ pub(super) enum OfPart {
 
 /// A program as motions.
 pub(super) struct Motions {
-    /// As it was named.
-    pub(super) name: String,
     /// What it is.
     pub(super) kind: Kind,
+    pub(super) places: Places,
     source: Source,
     part: Option<Part>,
-    /// Its text, to look up places in.
+    /// The drawing the motions are of.
+    pub(super) drawn: Option<Drawing>,
+}
+
+/// Where to look up what stands at a spot.
+pub(super) struct Places {
+    /// The program, as it was named.
+    pub(super) name: String,
+    kind: Kind,
+    /// Its text, where it has one.
     file: Option<File>,
+}
+
+impl Places {
+    /// A spot with the text that stands there; none where there is no text. A width of 0 means the whole block.
+    ///
+    /// To be asked when all has been read: the file and its reader share a position.
+    pub(super) fn place(&mut self, spot: Spot, width: usize) -> Option<Place> {
+        let file = self.file.as_mut().filter(|_| spot.line > 0)?;
+        let mut place = Place::read_again(file, spot, width.max(1)).ok()?;
+        if width == 0 {
+            let text = place.excerpt.as_bytes().get(place.caret..)?;
+            place.width =
+                if self.kind == Kind::Gcode { text.trim_ascii_end().len().max(1) } else { block_width(text) };
+        }
+        Some(place)
+    }
 }
 
 enum Source {
@@ -84,7 +133,12 @@ impl Motions {
             let message = format!("--dialect goes with G-code, and {word} is {}", kind.title());
             return Err(Failure::new(Exit::Usage, message).help("leave it out, or say --from gcode"));
         }
-        let (mut part, mut file) = (None, None);
+        if reading.drawing.is_given() && kind != Kind::Dxf {
+            let message = format!("{word} is {}, and not a drawing", kind.title());
+            return Err(Failure::new(Exit::Usage, message)
+                .help("leave out what goes with drawings only, or say --from dxf"));
+        }
+        let (mut part, mut file, mut drawn) = (None, None, None);
         let blocks = |motions| Source::Blocks { motions: Box::new(motions), base: Spot::default() };
         let source = match kind {
             Kind::Part => {
@@ -100,12 +154,30 @@ impl Motions {
                 }
             }
             Kind::Dxf => {
-                let message = format!("{word} is a drawing, and drawings are not read yet");
-                return Err(Failure::new(Exit::Usage, message));
+                let drawing = reading.drawing.read(word, &reading.starts)?;
+                let motions: Vec<Motion> = drawing.motions().collect();
+                drawn = Some(drawing);
+                Source::Made(Box::new(motions.into_iter()))
             }
             Kind::ThreeB | Kind::FourB | Kind::Gcode => {
                 let failed = |error: io::Error| source::unreadable(word, &error);
                 let is_file = word != "-" && Path::new(word).is_file();
+                if !is_file && reading.as_they_come && kind != Kind::Gcode {
+                    let (copy, text) = Copied::open(word).map_err(failed)?;
+                    file = Some(copy);
+                    let text = Box::new(BufReader::with_capacity(BUFFER, text));
+                    let source = blocks(match kind {
+                        Kind::FourB => three_b::motions::Motions::of_four_b(text, model),
+                        _ => three_b::motions::Motions::of_three_b(text, model),
+                    });
+                    return Ok(Self {
+                        kind,
+                        places: Places { name: name_of(word), kind, file },
+                        source,
+                        part,
+                        drawn,
+                    });
+                }
                 let opened = if is_file { File::open(word) } else { put_aside(word) }.map_err(failed)?;
                 let text = opened.try_clone().map_err(failed)?;
                 file = Some(opened);
@@ -113,7 +185,8 @@ impl Motions {
                 match kind {
                     Kind::FourB => blocks(three_b::motions::Motions::of_four_b(Box::new(text), model)),
                     Kind::Gcode => {
-                        let dialect = super::dialects::load(reading.dialect.as_deref())?;
+                        let mut dialect = dialects::load(reading.dialect(), "read")?;
+                        dialect.keeps_wrong_arcs = reading.keeps_wrong_arcs;
                         let motions = gcode::Motions::of_file(text, dialect.clone())
                             .map_err(|error| Failure::read(word, error))?;
                         Source::Gcode {
@@ -126,8 +199,7 @@ impl Motions {
                 }
             }
         };
-        let name = if word == "-" { "standard input".to_owned() } else { word.to_owned() };
-        Ok(Self { name, kind, source, part, file })
+        Ok(Self { kind, places: Places { name: name_of(word), kind, file }, source, part, drawn })
     }
 
     /// The 3B block the last motion came from.
@@ -151,20 +223,12 @@ impl Motions {
         self.part.as_ref()
     }
 
-    /// The dialect a G-code program is read in.
-    pub(super) fn dialect(&self) -> Option<&Dialect> {
-        match &self.source {
-            Source::Gcode { dialect, .. } => Some(dialect),
-            _ => None,
-        }
-    }
-
     /// Shows every line of a G-code program that can be read, with the number of its block.
     pub(super) fn lines(&mut self, mut show: impl FnMut(Line<'_>, u64)) -> Result<(), Failure> {
-        let (Source::Gcode { dialect, .. }, Some(file)) = (&self.source, &mut self.file) else {
+        let (Source::Gcode { dialect, .. }, Some(file)) = (&self.source, &mut self.places.file) else {
             return Ok(());
         };
-        let failed = |error: io::Error| source::unreadable(&self.name, &error);
+        let failed = |error: io::Error| source::unreadable(&self.places.name, &error);
         file.rewind().map_err(failed)?;
         let text = BufReader::with_capacity(BUFFER, file.try_clone().map_err(failed)?);
         let mut blocks = gcode::Blocks::new(text, dialect);
@@ -175,24 +239,18 @@ impl Motions {
         Ok(())
     }
 
-    /// A spot with the text that stands there; none where there is no text. A width of 0 means the whole block.
-    ///
-    /// To be asked when all has been read: the file and its reader share a position.
-    pub(super) fn place(&mut self, spot: Spot, width: usize) -> Option<Place> {
-        let file = self.file.as_mut().filter(|_| spot.line > 0)?;
-        let mut place = Place::read_again(file, spot, width.max(1)).ok()?;
-        if width == 0 {
-            let text = place.excerpt.as_bytes().get(place.caret..)?;
-            place.width =
-                if self.kind == Kind::Gcode { text.trim_ascii_end().len().max(1) } else { block_width(text) };
-        }
-        Some(place)
+    /// Where to look up what stands at a spot, for when the motions are gone.
+    pub(super) fn places(&self) -> Result<Places, Failure> {
+        let Places { name, kind, file } = &self.places;
+        let file = file.as_ref().map(File::try_clone).transpose();
+        let file = file.map_err(|error| source::unreadable(name, &error))?;
+        Ok(Places { name: name.clone(), kind: *kind, file })
     }
 
     /// Reads on behind an error; false where that cannot be.
     pub(super) fn go_on_behind(&mut self, error: &ReadError) -> bool {
         let ReadError::Program { place, .. } = error else { return false };
-        match (&mut self.source, &mut self.file) {
+        match (&mut self.source, &mut self.places.file) {
             (Source::Blocks { motions, base }, Some(file)) => {
                 let Ok(next) = next_start(file, place.spot()) else { return false };
                 let Ok(again) = file.try_clone() else { return false };
@@ -247,7 +305,8 @@ impl Text {
 impl Read for Text {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if self.at == self.line.len() {
-            (self.line.clear(), self.at = 0);
+            self.line.clear();
+            self.at = 0;
             while self.line.len() < buffer.len().min(BUFFER) {
                 match self.program.pull(&mut self.line).map_err(io::Error::other)? {
                     Some(_) => self.line.push(b'\n'),
@@ -303,12 +362,49 @@ fn block_width(text: &[u8]) -> usize {
     block.windows(2).position(is_end).map_or_else(|| block.trim_ascii_end().len().max(1), |at| at + 2)
 }
 
-/// Copies what can be read only once into a file without a name.
-fn put_aside(word: &str) -> io::Result<File> {
+/// What a source is called in messages.
+fn name_of(word: &str) -> String {
+    if word == "-" { "standard input".to_owned() } else { word.to_owned() }
+}
+
+/// What can be read only once, copied aside as it is read, so that places in it can be shown.
+struct Copied {
+    source: Box<dyn Read>,
+    copy: File,
+}
+
+impl Copied {
+    /// The copy, and what fills it.
+    fn open(word: &str) -> io::Result<(File, Self)> {
+        let copy = aside()?;
+        let source: Box<dyn Read> =
+            if word == "-" { Box::new(io::stdin()) } else { Box::new(File::open(word)?) };
+        Ok((copy.try_clone()?, Self { source, copy }))
+    }
+}
+
+impl Read for Copied {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.source.read(buffer)?;
+        // Whoever shows a place moves the position, which is one for both.
+        self.copy.seek(SeekFrom::End(0))?;
+        self.copy.write_all(&buffer[..count])?;
+        Ok(count)
+    }
+}
+
+/// A file without a name.
+fn aside() -> io::Result<File> {
     let path = std::env::temp_dir().join(format!("dripfeed-{}.in", std::process::id()));
-    let mut file = File::options().read(true).write(true).create_new(true).open(&path)?;
+    let file = File::options().read(true).write(true).create_new(true).open(&path)?;
     // An open file stays readable without its name; where a system thinks otherwise it is left behind.
     let _ = std::fs::remove_file(&path);
+    Ok(file)
+}
+
+/// Copies what can be read only once into a file without a name.
+fn put_aside(word: &str) -> io::Result<File> {
+    let mut file = aside()?;
     if word == "-" {
         io::copy(&mut io::stdin().lock(), &mut file)?;
     } else {

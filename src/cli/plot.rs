@@ -9,19 +9,24 @@
 //! A picture tells at a glance whether it is the right part. The SVG is in model millimetres: a point of the program
 //! stands at (x, -y); its classes are `nominal wire rapid cut lead-in start`. `docs/check.md` says what is drawn.
 
+use std::cell::RefCell;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::drawing;
 use super::failure::{Exit, Failure};
+use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
+use super::registers::Registers;
 use super::{print, print_json};
+use crate::check::wire::{self, Seen};
 use crate::drawing::Extent;
 use crate::interpolator::Model;
 use crate::plot::{Options as What, Plot, Plotted};
 
-/// Draw a program as SVG or PNG: contour, wire, lead-ins, rapid moves, and the cut pulse by pulse
+/// Draw a program as SVG or PNG: contour, wire, and the cut pulse by pulse
 #[derive(Args, Debug)]
 pub(super) struct Options {
     /// A program, a part file, or - for standard input
@@ -31,7 +36,7 @@ pub(super) struct Options {
     #[arg(short, long, value_name = "OUT.svg|OUT.png")]
     output: PathBuf,
     #[command(flatten)]
-    reading: Reading,
+    registers: Registers,
     /// The wire's diameter; 0 draws no wire [default: 0.18]
     #[arg(long, value_name = "MM", value_parser = diameter)]
     wire: Option<f64>,
@@ -50,6 +55,8 @@ pub(super) struct Options {
     /// Print what was drawn as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 /// What pictures can be written.
@@ -62,7 +69,8 @@ enum Picture {
 /// The wire that is drawn when none is named: molybdenum of 0.18 mm is what reciprocating machines commonly run.
 const WIRE_MM: f64 = 0.18;
 
-const PIXELS: u32 = 2400;
+/// How wide a PNG is unless it is said.
+pub(super) const PIXELS: u32 = 2400;
 
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let picture = picture_of(&options.output)?;
@@ -74,31 +82,26 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let model = Model::ALL.into_iter().find(|model| Some(model.name()) == named).unwrap_or(Model::Rotated);
     let simulated = (!options.no_simulation).then_some(model);
     let mut motions = Motions::open(&options.input, &options.reading, OfPart::Blocks, model)?;
+    if let Err(fault) = drawing::tell(&motions.places.name, motions.drawn.as_ref()) {
+        // A drawing that cannot be cut as it is can be looked at.
+        say!("{}", fault.render().trim_end());
+    }
     let wire = options.wire.or_else(|| kerf(&motions)).unwrap_or_else(|| {
         say!("the wire's diameter is not given: {WIRE_MM} mm is drawn (--wire MM)");
         WIRE_MM
     });
     let mut plot = Plot::new(What {
-        title: Path::new(&motions.name)
+        title: Path::new(&motions.places.name)
             .file_name()
-            .map_or_else(|| motions.name.clone(), |name| name.to_string_lossy().into_owned()),
+            .map_or_else(|| motions.places.name.clone(), |name| name.to_string_lossy().into_owned()),
         wire: (wire > 0.0).then_some(wire),
         numbers: options.numbers,
         simulated,
     });
-    let mut blocks = 0;
-    while let Some(motion) = motions.next() {
-        let motion = motion.map_err(|error| Failure::read(&motions.name, error))?;
-        blocks = motion.block;
-        plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
-            let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
-            failure.help("simulate another model with --interpolator, or none with --no-simulation")
-        })?;
-    }
+    let blocks = draw(&mut motions, &mut plot, &options.registers)?;
     let plotted = plot.finish();
     if plotted.extent.is_none() {
-        return Err(Failure::new(Exit::Program, format!("{} moves nothing", motions.name))
-            .help("check that this is the program that was meant"));
+        return Err(moves_nothing(&motions.places.name));
     }
     let bytes = match picture {
         Picture::Svg => plotted.picture.to_svg().into_bytes(),
@@ -115,6 +118,71 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         return print_json(&as_json(&plotted, blocks, bytes.len()));
     }
     print(account(&plotted, blocks, simulated).as_bytes())
+}
+
+pub(super) fn moves_nothing(name: &str) -> Failure {
+    Failure::new(Exit::Program, format!("{name} moves nothing"))
+        .help("check that this is the program that was meant")
+}
+
+/// Draws every motion; returns how many blocks there are.
+fn draw(motions: &mut Motions, plot: &mut Plot, registers: &Registers) -> Result<u64, Failure> {
+    let mut blocks = 0;
+    if motions.kind != Kind::Gcode {
+        while let Some(motion) = motions.next() {
+            let motion = motion.map_err(|error| Failure::read(&motions.places.name, error))?;
+            blocks = motion.block;
+            plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
+                let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
+                failure.help("simulate another model with --interpolator, or none with --no-simulation")
+            })?;
+        }
+        if motions.kind == Kind::FourB {
+            say!("the offset is keyed in at the control: the wire is drawn on the programmed path");
+        }
+        return Ok(blocks);
+    }
+    let (plot, mut failed) = (RefCell::new(plot), None);
+    let next = || match motions.next()? {
+        Ok(motion) => {
+            blocks = motion.block;
+            // G-code has no blocks whose pulses could be run, so nothing can fail.
+            let _ = plot.borrow_mut().see(&motion, None);
+            Some(motion)
+        }
+        Err(error) => {
+            failed = Some(Failure::read(&motions.places.name, error));
+            None
+        }
+    };
+    let mut doubt = None;
+    let mut is_offset = false;
+    wire::follow(next, &registers.held(), |seen| match seen {
+        Seen::Switched => is_offset = true,
+        Seen::Motion(motion) => plot.borrow_mut().see_wire(motion),
+        Seen::Passed(warning) => {
+            say!(
+                "block {}: the wire does not reach the contour at {:.3}, {:.3} mm",
+                warning.block,
+                warning.unreached.at.x,
+                warning.unreached.at.y
+            );
+        }
+        Seen::Failed(error) => doubt = Some(error.to_string()),
+        Seen::Unknown(register) => {
+            doubt = Some(format!("what register {register} holds is not given (--register {register}=MM)"));
+        }
+    });
+    if let Some(failure) = failed {
+        return Err(failure);
+    }
+    if let Some(doubt) = &doubt {
+        say!("{doubt}: the wire is drawn on the programmed path");
+    }
+    if !is_offset || doubt.is_some() {
+        plot.into_inner().forget_wire();
+    }
+    Ok(blocks)
 }
 
 fn is_standard_output(path: &Path) -> bool {
@@ -188,7 +256,7 @@ fn account(plotted: &Plotted, blocks: u64, simulated: Option<Model>) -> String {
             deviation.block
         ));
     }
-    if plotted.thinned_um > 2.0 {
+    if plotted.thinned_um > 2.5 {
         text.push_str(&format!(
             "lines are drawn within {:.0} µm, to keep the picture small\n",
             plotted.thinned_um

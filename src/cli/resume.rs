@@ -75,7 +75,9 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         )
         .help("name the program with --source FILE"));
     }
-    let source = Source::open(word, Kind::named(&job.kind))?;
+    let source = Source::open(word, Kind::named(&job.kind), None)?;
+    // What a broken off job of these kinds would be taken up with is never the first block.
+    source.check_from_block(u64::MAX)?;
     if source.is_stream() {
         return Err(Failure::new(
             Exit::Usage,

@@ -19,6 +19,7 @@ use super::failure::{Exit, Failure};
 use super::feeding::{self, Feeding, StopFlags};
 use super::jobs;
 use super::kind::Kind;
+use super::machines;
 use super::question;
 use super::source::Source;
 use super::spot;
@@ -26,12 +27,11 @@ use crate::journal::Job;
 use crate::journal::writer::{self, Writer};
 use crate::link::Port;
 use crate::part::Warning;
-use crate::program::ProgramError;
 
 /// Feed a program to a control, block by block, as it asks
 #[derive(Args, Debug)]
 pub(super) struct Options {
-    /// A 3B program, a part file (.toml), or - for standard input
+    /// A 3B, 4B or G-code program, a part file (.toml), or - for standard input
     source: String,
     /// A serial device, or tcp://host:port
     #[arg(long, value_name = "PORT", required_unless_present = "dry_run", value_parser = Port::parse)]
@@ -42,6 +42,9 @@ pub(super) struct Options {
     /// What the source is, instead of what its name says
     #[arg(long, value_enum)]
     from: Option<Kind>,
+    /// The control a G-code program is for: a built-in dialect or a dialect file [default: the machine's, else generic]
+    #[arg(long, value_name = "NAME|FILE")]
+    dialect: Option<String>,
     /// Send this block first; the wire must stand where it begins
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     from_block: Option<u64>,
@@ -62,12 +65,17 @@ pub(super) struct Options {
 }
 
 pub(super) fn run(options: Options) -> Result<(), Failure> {
-    let source = Source::open(&options.source, options.from)?;
+    let of_machine = || -> Result<Option<String>, Failure> {
+        Ok(options.machine.as_deref().map(machines::load).transpose()?.and_then(|m| m.profile.dialect))
+    };
+    let dialect = options.dialect.clone().map_or_else(of_machine, |named| Ok(Some(named)))?;
+    let source = Source::open(&options.source, options.from, dialect.as_deref())?;
     let warnings = source.prepared().map_or(&[][..], |prepared| prepared.warnings());
     for warning in warnings {
         say!("warning: {warning}");
     }
     let from_block = options.from_block.unwrap_or(1);
+    source.check_from_block(from_block)?;
     if from_block > 1 && !source.is_stream() {
         check_block(&source, from_block)?;
     }
@@ -146,7 +154,7 @@ fn check_block(source: &Source, from_block: u64) -> Result<(), Failure> {
         match program.pull(&mut text) {
             Ok(Some(_)) => {}
             Ok(None) => return Err(feeding::no_such_block(from_block, program.blocks())),
-            Err(ProgramError::Read(error)) => return Err(Failure::read(&source.path, error)),
+            Err(error) => return Err(Failure::program(&source.path, error)),
         }
     }
     Ok(())

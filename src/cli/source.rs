@@ -10,13 +10,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
+use super::dialects;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
+use crate::formats::gcode::{Dialect, Library, Motions};
 use crate::journal::history::History;
 use crate::journal::resume;
-use crate::part::Prepared;
+use crate::motion::{Act, Motion};
 use crate::part::file::PartFile;
-use crate::program::{self, Counted, Generated, Line, Program, Segment, Segments};
+use crate::part::{Format, Prepared};
+use crate::program::verbatim::{FourB, Gcode};
+use crate::program::{self, Counted, Line, Program, Segment, Segments};
 
 /// A checked source.
 #[derive(Debug)]
@@ -24,6 +28,8 @@ pub(super) struct Source {
     /// As it was named, made absolute.
     pub(super) path: String,
     pub(super) kind: Kind,
+    /// What G-code is read in.
+    dialect: Option<Dialect>,
     /// Digest of the source's bytes; empty for a stream.
     pub(super) digest: String,
     /// Blocks and bytes of text, where a check has counted them.
@@ -79,21 +85,24 @@ pub(super) fn unreadable(path: &str, error: &io::Error) -> Failure {
 
 impl Source {
     /// Opens and checks what a word on the command line stands for.
-    pub(super) fn open(word: &str, from: Option<Kind>) -> Result<Self, Failure> {
+    ///
+    /// G-code is read in a dialect; the generic one where none is named.
+    pub(super) fn open(word: &str, from: Option<Kind>, dialect: Option<&str>) -> Result<Self, Failure> {
         let kind = Kind::asked(word, from)?;
+        let dialect = (kind == Kind::Gcode).then(|| dialects::load(dialect, "read")).transpose()?;
         if word == "-" {
             return if kind == Kind::Part {
                 Self::part("-", Path::new("-"))
             } else {
-                Self::stream(word, kind)
+                Self::stream(word, kind, dialect)
             };
         }
         let metadata = std::fs::metadata(word).map_err(|error| unreadable(word, &error))?;
         let path = std::path::absolute(word).map_err(|error| unreadable(word, &error))?;
         match kind {
             Kind::Part => Self::part(word, &path),
-            kind if metadata.is_file() => Self::file(word, path, kind),
-            kind => Self::stream(&path.display().to_string(), kind),
+            kind if metadata.is_file() => Self::file(word, path, kind, dialect),
+            kind => Self::stream(&path.display().to_string(), kind, dialect),
         }
     }
 
@@ -103,17 +112,18 @@ impl Source {
         Self {
             path: name.to_owned(),
             kind: Kind::Part,
+            dialect: None,
             digest: String::new(),
             size: None,
             body: Body::Part(Box::new(prepared)),
         }
     }
 
-    fn stream(path: &str, kind: Kind) -> Result<Self, Failure> {
+    fn stream(path: &str, kind: Kind, dialect: Option<Dialect>) -> Result<Self, Failure> {
         // A drawing is refused before it is waited for.
-        text_program(path, kind, io::empty())?;
+        text_program(path, kind, io::empty(), dialect.as_ref(), None)?;
         let path = path.to_owned();
-        Ok(Self { path, kind, digest: String::new(), size: None, body: Body::Stream })
+        Ok(Self { path, kind, dialect, digest: String::new(), size: None, body: Body::Stream })
     }
 
     fn part(word: &str, path: &Path) -> Result<Self, Failure> {
@@ -122,6 +132,7 @@ impl Source {
         Ok(Self {
             path: path.display().to_string(),
             kind: Kind::Part,
+            dialect: None,
             digest: digest.to_hex().to_string(),
             size: None,
             body: Body::Part(Box::new(prepared)),
@@ -129,11 +140,15 @@ impl Source {
     }
 
     /// Checks a program file whole.
-    fn file(word: &str, path: PathBuf, kind: Kind) -> Result<Self, Failure> {
+    fn file(word: &str, path: PathBuf, kind: Kind, dialect: Option<Dialect>) -> Result<Self, Failure> {
+        if let Some(dialect) = &dialect {
+            check_gcode(word, &path, dialect)?;
+        }
         let file = File::open(&path).map_err(|error| unreadable(word, &error))?;
         let metadata = file.metadata().map_err(|error| unreadable(word, &error))?;
         let hashing = Arc::new(Mutex::new(Hashing { file, hasher: blake3::Hasher::new(), bytes: 0 }));
-        let mut reader = text_program(word, kind, Shared(Arc::clone(&hashing)))?;
+        let shared = Shared(Arc::clone(&hashing));
+        let mut reader = text_program(word, kind, shared, dialect.as_ref(), Some(&path))?;
         let (mut size, mut text) = (Size { blocks: 0, lines: 0, bytes: 0 }, Vec::new());
         loop {
             text.clear();
@@ -144,7 +159,7 @@ impl Source {
                     size.bytes += text.len() as u64;
                 }
                 Ok(None) => break,
-                Err(program::ProgramError::Read(error)) => return Err(Failure::read(word, error)),
+                Err(error) => return Err(Failure::program(word, error)),
             }
         }
         drop(reader);
@@ -158,6 +173,7 @@ impl Source {
         Ok(Self {
             path: path.display().to_string(),
             kind,
+            dialect,
             digest: digest.to_hex().to_string(),
             size: Some(size),
             body: Body::File(stamp),
@@ -185,17 +201,46 @@ impl Source {
     /// The program, from its first block.
     pub(super) fn program(&self) -> Result<Box<dyn Program>, Failure> {
         Ok(match &self.body {
-            Body::Part(prepared) => Box::new(Generated::new(prepared)),
+            Body::Part(prepared) => program::generated(prepared),
             Body::File(stamp) => {
                 let verified =
                     Verified::open(stamp.clone()).map_err(|error| unreadable(&self.path, &error))?;
-                text_program(&self.path, self.kind, verified)?
+                self.text_program(verified, Some(&stamp.path))?
             }
-            Body::Stream if self.path == "-" => text_program(&self.path, self.kind, io::stdin())?,
-            Body::Stream => {
-                text_program(&self.path, self.kind, Later { path: self.path.clone(), file: None })?
-            }
+            Body::Stream if self.path == "-" => self.text_program(io::stdin(), None)?,
+            Body::Stream => self.text_program(Later { path: self.path.clone(), file: None }, None)?,
         })
+    }
+
+    fn text_program(
+        &self,
+        text: impl Read + Send + 'static,
+        file: Option<&Path>,
+    ) -> Result<Box<dyn Program>, Failure> {
+        text_program(&self.path, self.kind, text, self.dialect.as_ref(), file)
+    }
+
+    /// Refuses to begin elsewhere than at the first block where the control would not know what is in force there.
+    pub(super) fn check_from_block(&self, from_block: u64) -> Result<(), Failure> {
+        let kind = match self.prepared().map(|prepared| &prepared.part().format) {
+            Some(Format::FourB) => Kind::FourB,
+            Some(Format::Gcode(_)) => Kind::Gcode,
+            Some(Format::ThreeB) | None => self.kind,
+        };
+        let in_force = match kind {
+            Kind::Gcode => "its modal state (units, distance mode, offset)",
+            Kind::FourB => "the offset it adds to the outline",
+            Kind::ThreeB | Kind::Part | Kind::Dxf => return Ok(()),
+        };
+        if from_block <= 1 {
+            return Ok(());
+        }
+        let message = format!(
+            "{} is begun at its first block: anywhere else the control would not have {in_force}",
+            self.path
+        );
+        Err(Failure::new(Exit::Usage, message)
+            .help("send it whole, or cut the rest into a program of its own that says what is in force"))
     }
 
     /// Makes the whole program once to compare it with a journal: its blocks, and the first segment that differs.
@@ -220,7 +265,7 @@ impl Source {
                     }
                 }
                 Ok(None) => break,
-                Err(program::ProgramError::Read(error)) => return Err(Failure::read(&self.path, error)),
+                Err(error) => return Err(Failure::program(&self.path, error)),
             }
         }
         // A recorded segment that was not met lies beyond the program's end.
@@ -236,21 +281,63 @@ impl Source {
     }
 }
 
-/// The program in a text of a kind.
+/// The program in a text of a kind; in a file it may call subprograms that stand behind its end.
 fn text_program(
     word: &str,
     kind: Kind,
     text: impl Read + Send + 'static,
+    dialect: Option<&Dialect>,
+    file: Option<&Path>,
 ) -> Result<Box<dyn Program>, Failure> {
-    match kind {
-        Kind::ThreeB => Ok(Box::new(program::Read::new(BufReader::with_capacity(READ_BUFFER, text)))),
-        Kind::FourB | Kind::Gcode => Err(Failure::new(Exit::Usage, "not yet")),
-        Kind::Dxf | Kind::Part => {
+    match (kind, dialect) {
+        (Kind::ThreeB, _) => Ok(Box::new(program::Read::new(BufReader::with_capacity(READ_BUFFER, text)))),
+        (Kind::FourB, _) => Ok(Box::new(FourB::new(BufReader::with_capacity(READ_BUFFER, text)))),
+        (Kind::Gcode, Some(dialect)) => {
+            let library = match file.map(File::open).transpose().map_err(|e| unreadable(word, &e))? {
+                Some(mut file) => {
+                    Library::index(&mut file, dialect).map_err(|error| Failure::read(word, error))?
+                }
+                None => Library::default(),
+            };
+            Ok(Box::new(Gcode::new(text, dialect.clone(), library)))
+        }
+        (Kind::Gcode | Kind::Dxf | Kind::Part, _) => {
             let message = format!("{word} is a drawing: what is fed is a program made from it");
             Err(Failure::new(Exit::Usage, message)
                 .help("make one with `dripfeed convert`, look at it, and send that"))
         }
     }
+}
+
+/// Executes a G-code program once, before anything is sent: what is wrong with it is found, and what a control that is
+/// fed cannot do is told.
+fn check_gcode(word: &str, path: &Path, dialect: &Dialect) -> Result<(), Failure> {
+    let file = File::open(path).map_err(|error| unreadable(word, &error))?;
+    let failed = |error| Failure::read(word, error);
+    let mut motions =
+        Motions::of_file(BufReader::with_capacity(READ_BUFFER, file), dialect.clone()).map_err(failed)?;
+    let mut unknown: Option<(Motion, u64)> = None;
+    for motion in &mut motions {
+        let motion = motion.map_err(failed)?;
+        if matches!(motion.act, Act::Unknown(_)) {
+            unknown.get_or_insert((motion, 0)).1 += 1;
+        }
+    }
+    if let Some((Motion { act: Act::Unknown(text), spot, .. }, count)) = unknown {
+        let text = String::from_utf8_lossy(&text).into_owned();
+        say!(
+            "warning: words that the dialect {} does not know are sent as they stand: {count}, first `{text}` in line {}",
+            dialect.name,
+            spot.line
+        );
+    }
+    if let [label, ..] = motions.called() {
+        say!(
+            "warning: the program calls subprogram {label}: a control that is fed block by block cannot go back to it; \
+             `dripfeed convert {word} --to gcode` writes it out"
+        );
+    }
+    Ok(())
 }
 
 /// A FIFO, opened when it is first read: opening it waits for whoever writes, and that wait must not be the main thread's.

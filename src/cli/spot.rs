@@ -5,7 +5,7 @@ use super::feeding::no_such_block;
 use super::source::Source;
 use crate::interpolator::Model;
 use crate::part::Prepared;
-use crate::program::{Line, ProgramError};
+use crate::program::Line;
 use crate::rounding::Aim;
 use crate::units::Position;
 
@@ -21,7 +21,7 @@ pub(super) fn around(source: &Source, from_block: u64) -> Result<String, Failure
         let numbered = match program.pull(&mut text) {
             Ok(Some(numbered)) => numbered,
             Ok(None) => break,
-            Err(ProgramError::Read(error)) => return Err(Failure::read(&source.path, error)),
+            Err(error) => return Err(Failure::program(&source.path, error)),
         };
         let (Line::Block(made), block) = (numbered.line, numbered.block) else { continue };
         if let Some(made) = made

@@ -8,7 +8,6 @@ use super::failure::{Exit, Failure};
 use super::feeding::time_of_day;
 use crate::journal::{Ended, How};
 use crate::link::feed::{Outcome, Snapshot, SourceError, SourceFault};
-use crate::program::ProgramError;
 use crate::protocol::{self, Ending, Torn, TornLine};
 
 /// How a feed ended, for the journal.
@@ -135,8 +134,8 @@ pub(super) fn conclude(
 fn source_failure(error: SourceError, source: &str) -> Failure {
     let place = format!("block {} cannot be made and was not sent", error.block);
     match error.fault {
-        SourceFault::Program(ProgramError::Read(read)) => {
-            let mut failure = Failure::read(source, read);
+        SourceFault::Program(error) => {
+            let mut failure = Failure::program(source, error);
             failure.prefix(&place);
             failure
         }

@@ -7,7 +7,11 @@
 //!
 //! *Unverified:* the field order with the flag behind G, the spelling of the taper ratio, a flag without a fourth B.
 
+mod corners;
+pub mod offset;
+mod outline;
 mod read;
+pub mod write;
 
 use crate::formats::three_b;
 use crate::motion::Flag;
@@ -24,6 +28,50 @@ pub struct Block {
     pub fourth: Option<Fourth>,
     /// The compensation flag.
     pub flag: Option<Flag>,
+}
+
+impl Block {
+    /// Appends the block's text, without an end of block.
+    pub fn write(&self, style: three_b::Style, order: Order, text: &mut Vec<u8>) {
+        style.write_numbers(&self.block, text);
+        if self.fourth.is_some() || self.flag.is_some() {
+            text.push(b'B');
+            match self.fourth {
+                Some(Fourth::Radius(radius)) => three_b::push_number(text, radius.0, 1),
+                Some(Fourth::Ratio(ratio)) => {
+                    text.push(b'L');
+                    ratio.write(text);
+                }
+                None => {}
+            }
+            style.gap(text);
+        }
+        let flag = |text: &mut Vec<u8>| {
+            if let Some(flag) = self.flag {
+                text.extend_from_slice(if flag == Flag::D { b"D" } else { b"DD" });
+                style.gap(text);
+            }
+        };
+        if order == Order::FlagBeforeAxis {
+            flag(text);
+        }
+        style.write_axis(self.block.g, text);
+        style.gap(text);
+        if order == Order::FlagBehindAxis {
+            flag(text);
+        }
+        three_b::write_instruction(self.block.motion, text);
+    }
+}
+
+/// Where in a block the flag stands: controls differ.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Order {
+    /// `B X B Y B J B R D G Z`, as in the 2015 paper.
+    #[default]
+    FlagBeforeAxis,
+    /// `B X B Y B J B R G D Z`. *Unverified.*
+    FlagBehindAxis,
 }
 
 /// What stands behind the fourth B.

@@ -226,41 +226,52 @@ impl Default for Style {
 impl Style {
     /// Appends the block's text, without an end of block.
     pub fn write(self, block: &Block, text: &mut Vec<u8>) {
-        text.push(b'B');
-        push_number(text, block.x.0, 1);
+        self.write_numbers(block, text);
+        self.write_axis(block.g, text);
         self.gap(text);
-        text.push(b'B');
-        push_number(text, block.y.0, 1);
-        self.gap(text);
-        text.push(b'B');
-        push_number(text, block.j.0, self.j_digits);
-        self.gap(text);
+        write_instruction(block.motion, text);
+    }
+
+    /// Appends X, Y and J.
+    pub(in crate::formats) fn write_numbers(self, block: &Block, text: &mut Vec<u8>) {
+        for (number, digits) in [(block.x, 1), (block.y, 1), (block.j, self.j_digits)] {
+            text.push(b'B');
+            push_number(text, number.0, digits);
+            self.gap(text);
+        }
+    }
+
+    /// Appends G.
+    pub(in crate::formats) fn write_axis(self, axis: Axis, text: &mut Vec<u8>) {
         if self.g_letter {
             text.push(b'G');
         }
-        text.push(match block.g {
+        text.push(match axis {
             Axis::X => b'X',
             Axis::Y => b'Y',
         });
-        self.gap(text);
-        let (letters, quadrant): (&[u8], _) = match block.motion {
-            Motion::Line(quadrant) => (b"L", quadrant),
-            Motion::Arc(Sense::Clockwise, quadrant) => (b"SR", quadrant),
-            Motion::Arc(Sense::CounterClockwise, quadrant) => (b"NR", quadrant),
-        };
-        text.extend_from_slice(letters);
-        text.push(quadrant.digit());
     }
 
-    fn gap(self, text: &mut Vec<u8>) {
+    pub(in crate::formats) fn gap(self, text: &mut Vec<u8>) {
         if self.blanks {
             text.push(b' ');
         }
     }
 }
 
+/// Appends Z.
+pub(in crate::formats) fn write_instruction(motion: Motion, text: &mut Vec<u8>) {
+    let (letters, quadrant): (&[u8], _) = match motion {
+        Motion::Line(quadrant) => (b"L", quadrant),
+        Motion::Arc(Sense::Clockwise, quadrant) => (b"SR", quadrant),
+        Motion::Arc(Sense::CounterClockwise, quadrant) => (b"NR", quadrant),
+    };
+    text.extend_from_slice(letters);
+    text.push(quadrant.digit());
+}
+
 /// Appends a non-negative number in decimal, at least `digits` long.
-fn push_number(text: &mut Vec<u8>, number: i64, digits: usize) {
+pub(in crate::formats) fn push_number(text: &mut Vec<u8>, number: i64, digits: usize) {
     let mut buffer = [b'0'; 20];
     let mut rest = number.unsigned_abs();
     let mut at = buffer.len();

@@ -29,20 +29,24 @@ enum Way {
     Exact { block: Block, target: Position, travelled: i64 },
 }
 
+/// A step: one of the two is ±1, the other 0. What is added needs no branch, and which axis is next cannot be foretold.
+type Step = (i64, i64);
+
 #[derive(Clone, Debug)]
 struct Line {
-    x_leads: bool,
-    /// The leading axis and the other, µm.
+    /// The leading axis and the other, µm, and a step along each.
     lead: i64,
     other: i64,
-    signs: (i64, i64),
+    along: Step,
+    aside: Step,
     f: i64,
 }
 
 #[derive(Clone, Debug)]
 struct Arc {
     sense: Sense,
-    is_strict: bool,
+    /// Steps inward from this F on.
+    inward_from: i64,
     /// Seen from the centre.
     x: i64,
     y: i64,
@@ -62,12 +66,14 @@ impl Model {
             (Self::Exact, _) => Way::Exact { block: *block, target: Position::default(), travelled: 0 },
             (Self::Rotated | Self::Mirrored | Self::Strict, Motion::Line(quadrant)) => {
                 let x_leads = self == Self::Mirrored || matches!(quadrant, Quadrant::First | Quadrant::Third);
-                let (lead, other) = if x_leads { (block.x.0, block.y.0) } else { (block.y.0, block.x.0) };
-                Way::Line(Line { x_leads, lead, other, signs: quadrant.signs(), f: 0 })
+                let (x, y) = ((block.x.0, (quadrant.signs().0, 0)), (block.y.0, (0, quadrant.signs().1)));
+                let ((lead, along), (other, aside)) = if x_leads { (x, y) } else { (y, x) };
+                Way::Line(Line { lead, other, along, aside, f: 0 })
             }
             (Self::Rotated | Self::Mirrored | Self::Strict, Motion::Arc(sense, _)) => {
                 let start = block.signed();
-                Way::Arc(Arc { sense, is_strict: self == Self::Strict, x: start.x.0, y: start.y.0, f: 0 })
+                let inward_from = i64::from(self == Self::Strict);
+                Way::Arc(Arc { sense, inward_from, x: start.x.0, y: start.y.0, f: 0 })
             }
         };
         Ok(Pulses { at: Position::default(), left: block.j.0, g: block.g, way })
@@ -79,70 +85,99 @@ impl Iterator for Pulses {
 
     #[inline]
     fn next(&mut self) -> Option<Position> {
-        let (axis, sign) = match &mut self.way {
+        let step = match &mut self.way {
             Way::Line(line) if self.left > 0 => line.step(),
             Way::Arc(arc) if self.left > 0 => arc.step()?,
             Way::Line(_) | Way::Arc(_) => return None,
             Way::Exact { block, target, travelled } => exact_step(block, target, travelled, self.at)?,
         };
-        match axis {
-            Axis::X => self.at.x.0 += sign,
-            Axis::Y => self.at.y.0 += sign,
+        Some(self.go(step))
+    }
+
+    /// The same pulses, faster: what kind of way it is, is asked once a block.
+    #[inline]
+    fn fold<T, F: FnMut(T, Position) -> T>(mut self, first: T, mut each: F) -> T {
+        let mut all = first;
+        match self.way.clone() {
+            Way::Line(mut line) => {
+                while self.left > 0 {
+                    all = each(all, self.go(line.step()));
+                }
+            }
+            Way::Arc(mut arc) => {
+                while self.left > 0
+                    && let Some(step) = arc.step()
+                {
+                    all = each(all, self.go(step));
+                }
+            }
+            Way::Exact { .. } => {
+                while let Some(position) = self.next() {
+                    all = each(all, position);
+                }
+            }
         }
-        self.left -= i64::from(axis == self.g);
-        Some(self.at)
+        all
+    }
+}
+
+impl Pulses {
+    #[inline]
+    fn go(&mut self, (x, y): Step) -> Position {
+        self.at.x.0 += x;
+        self.at.y.0 += y;
+        self.left -= match self.g {
+            Axis::X => x.abs(),
+            Axis::Y => y.abs(),
+        };
+        self.at
     }
 }
 
 impl Line {
     #[inline]
-    fn step(&mut self) -> (Axis, i64) {
+    fn step(&mut self) -> Step {
         let leads = self.f >= 0;
         self.f += if leads { -self.other } else { self.lead };
-        if leads == self.x_leads { (Axis::X, self.signs.0) } else { (Axis::Y, self.signs.1) }
+        if leads { self.along } else { self.aside }
     }
 }
 
 impl Arc {
     /// The next step; none on the centre, which lies in no quadrant.
     #[inline]
-    fn step(&mut self) -> Option<(Axis, i64)> {
-        let (x, y) = (self.x, self.y);
-        let inward = if self.is_strict { self.f > 0 } else { self.f >= 0 };
-        let pick = |inner: (Axis, i64), outer: (Axis, i64)| if inward { inner } else { outer };
-        let (axis, sign) = match self.sense {
-            Sense::CounterClockwise => match (x, y) {
-                (x, y) if x > 0 && y >= 0 => pick((Axis::X, -1), (Axis::Y, 1)),
-                (x, y) if x <= 0 && y > 0 => pick((Axis::Y, -1), (Axis::X, -1)),
-                (x, y) if x < 0 && y <= 0 => pick((Axis::X, 1), (Axis::Y, -1)),
-                (x, y) if x >= 0 && y < 0 => pick((Axis::Y, 1), (Axis::X, 1)),
+    fn step(&mut self) -> Option<Step> {
+        const LEFT: Step = (-1, 0);
+        const RIGHT: Step = (1, 0);
+        const UP: Step = (0, 1);
+        const DOWN: Step = (0, -1);
+        let (inner, outer) = match self.sense {
+            Sense::CounterClockwise => match (self.x, self.y) {
+                (x, y) if x > 0 && y >= 0 => (LEFT, UP),
+                (x, y) if x <= 0 && y > 0 => (DOWN, LEFT),
+                (x, y) if x < 0 && y <= 0 => (RIGHT, DOWN),
+                (x, y) if x >= 0 && y < 0 => (UP, RIGHT),
                 _ => return None,
             },
-            Sense::Clockwise => match (x, y) {
-                (x, y) if x >= 0 && y > 0 => pick((Axis::Y, -1), (Axis::X, 1)),
-                (x, y) if x > 0 && y <= 0 => pick((Axis::X, -1), (Axis::Y, -1)),
-                (x, y) if x <= 0 && y < 0 => pick((Axis::Y, 1), (Axis::X, -1)),
-                (x, y) if x < 0 && y >= 0 => pick((Axis::X, 1), (Axis::Y, 1)),
+            Sense::Clockwise => match (self.x, self.y) {
+                (x, y) if x >= 0 && y > 0 => (DOWN, RIGHT),
+                (x, y) if x > 0 && y <= 0 => (LEFT, DOWN),
+                (x, y) if x <= 0 && y < 0 => (UP, LEFT),
+                (x, y) if x < 0 && y >= 0 => (RIGHT, UP),
                 _ => return None,
             },
         };
-        let v = match axis {
-            Axis::X => &mut self.x,
-            Axis::Y => &mut self.y,
-        };
-        self.f += 2 * sign * *v + 1;
-        *v += sign;
-        Some((axis, sign))
+        let inward = self.f >= self.inward_from;
+        let step = (if inward { inner.0 } else { outer.0 }, if inward { inner.1 } else { outer.1 });
+        self.f += 2 * (step.0 * self.x + step.1 * self.y) + 1;
+        self.x += step.0;
+        self.y += step.1;
+        Some(step)
     }
 }
 
 /// A step towards where the true curve is at the next micron of travel: of the two there may be, the one nearer to it.
-fn exact_step(
-    block: &Block,
-    target: &mut Position,
-    travelled: &mut i64,
-    at: Position,
-) -> Option<(Axis, i64)> {
+fn exact_step(block: &Block, target: &mut Position, travelled: &mut i64, at: Position) -> Option<Step> {
     while *target == at {
         if *travelled >= block.j.0 {
             return None;
@@ -152,15 +187,13 @@ fn exact_step(
         *target = Model::Exact.displacement(&Block { j: Micrometres(*travelled), ..*block }).ok()?;
     }
     let way = *target - at;
-    let (x, y) = ((Axis::X, way.x.0.signum()), (Axis::Y, way.y.0.signum()));
+    let (x, y) = (way.x.0.signum(), way.y.0.signum());
     let takes_x = match (way.x.0, way.y.0) {
         (_, 0) => true,
         (0, _) => false,
-        (_, _) => {
-            off_curve(block, at + Position::new(x.1, 0)) <= off_curve(block, at + Position::new(0, y.1))
-        }
+        (_, _) => off_curve(block, at + Position::new(x, 0)) <= off_curve(block, at + Position::new(0, y)),
     };
-    Some(if takes_x { x } else { y })
+    Some(if takes_x { (x, 0) } else { (0, y) })
 }
 
 /// How far a position is from a block's true curve, in a measure that only compares.

@@ -257,6 +257,10 @@ fn the_pulses_of_a_block_end_where_the_closed_form_says_and_never_jump() {
             stepped += 1;
         }
         assert_eq!(at, *end, "block {n}: {block:?} under {model:?}");
+        // All at once they are the same ones.
+        let mut again = pulses.clone();
+        pulses.clone().for_each(|pulse| assert_eq!(again.next(), Some(pulse)));
+        assert_eq!(again.next(), None);
     }
     assert!(stepped > 1_000_000 && faults > 100, "{stepped} pulses, {faults} faults");
 }

@@ -2,59 +2,69 @@
 //!
 //! A contour's elements are reversed and so is their order; what led in leads out. The side of an offset or a taper
 //! changes; a 4B flag does not, for an arc that is convex stays so, and the flag of a lead-in stays with the move that
-//! leads in. Settings made on the way (an offset put on, a cutting condition) hold for the same moves as before. The
-//! contours keep their order. One contour is held at a time.
+//! leads in. A cutting condition holds for the same moves as before. An offset or a taper is put on and taken off *along*
+//! a move: what it was before that move, it is behind it when the move is run backwards, so the move that took it off
+//! puts it on. The contours keep their order. One contour is held at a time.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 
-use super::runs::{ContourError, Layout, MEET_MM, Portion, Run, Runs};
-use super::{Act, Flag, Motion, Offset, Taper};
+use super::runs::{Between, ContourError, Contourwise, Layout, MEET_MM, Rework, Run};
+use super::{Act, Flag, Motion, Offset, Stop, Taper};
 use crate::geometry::{Element, Point};
 
-/// Reverses a program contour by contour.
-#[derive(Debug)]
-pub struct Reversed<I> {
-    runs: Runs<I>,
-    ready: VecDeque<Motion>,
-    settings: Settings,
-}
-
-impl<I, E> Reversed<I>
+/// A program cut backwards, contour by contour.
+pub fn reversed<I, E>(motions: I) -> Contourwise<I, Reverse>
 where
     I: Iterator<Item = Result<Motion, E>>,
     E: Into<ContourError>,
 {
-    /// The program cut backwards.
-    pub fn new(motions: I) -> Self {
-        Self { runs: Runs::new(motions), ready: VecDeque::new(), settings: Settings::default() }
+    Contourwise::new(motions, Reverse::default())
+}
+
+/// Turns contours round.
+#[derive(Debug, Default)]
+pub struct Reverse {
+    /// What the program has said.
+    settings: Settings,
+    /// What has been said in turn, as the program says it forwards.
+    in_force: Settings,
+    /// The offset and the taper on the last move of the program.
+    on_move: Settings,
+}
+
+impl Rework for Reverse {
+    fn run(&mut self, run: Run) -> Result<Vec<Motion>, ContourError> {
+        self.backwards(run)
+    }
+
+    fn between(&mut self, motion: Motion) -> Result<Between, ContourError> {
+        match &motion.act {
+            // Along which move it is put on or taken off is told by the next one.
+            Act::Offset(_) | Act::Taper(_) => {
+                note(&mut self.settings, &motion);
+                Ok(Between::Several(Vec::new()))
+            }
+            Act::Move { .. } => self.behind_what_waits(motion),
+            // Taken off behind the last move of all.
+            Act::Stop(Stop::End) if !self.settings.values().any(is_on) => self.behind_what_waits(motion),
+            _ => {
+                if note(&mut self.settings, &motion) {
+                    note(&mut self.in_force, &motion);
+                }
+                Ok(Between::One(motion))
+            }
+        }
     }
 }
 
-impl<I, E> Iterator for Reversed<I>
-where
-    I: Iterator<Item = Result<Motion, E>>,
-    E: Into<ContourError>,
-{
-    type Item = Result<Motion, ContourError>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            if let Some(motion) = self.ready.pop_front() {
-                return Some(Ok(motion));
-            }
-            match self.runs.next()? {
-                Ok(Portion::Between(mut motion)) => {
-                    note(&mut self.settings, &motion);
-                    motion.act = other_side(motion.act);
-                    return Some(Ok(motion));
-                }
-                Ok(Portion::Run(run)) => match reversed(run, &mut self.settings) {
-                    Ok(motions) => self.ready = motions.into(),
-                    Err(error) => return Some(Err(error)),
-                },
-                Err(error) => return Some(Err(error)),
-            }
-        }
+impl Reverse {
+    /// A motion between runs behind the offset and the taper that hold for it.
+    fn behind_what_waits(&mut self, motion: Motion) -> Result<Between, ContourError> {
+        let mut motions = Vec::new();
+        change(&mut self.in_force, &self.settings, &motion, &mut motions)?;
+        self.on_move = path_of(&self.settings);
+        motions.push(motion);
+        Ok(Between::Several(motions))
     }
 }
 
@@ -86,6 +96,8 @@ fn address(act: &Act) -> Option<Vec<u8>> {
 struct Cut {
     motion: Motion,
     settings: Settings,
+    /// The offset and the taper on the move before it.
+    before: Settings,
     /// What is said just before the move and stays with it.
     remarks: Vec<Motion>,
     /// What happens at the node before the move: stops, functions.
@@ -93,47 +105,78 @@ struct Cut {
     backwards: bool,
 }
 
-/// A run cut backwards.
-fn reversed(run: Run, settings: &mut Settings) -> Result<Vec<Motion>, ContourError> {
-    let layout = run.layout();
-    if let (false, Some((first, _))) = (layout.closed, run.cuts().next()) {
-        return Err(ContourError::at(
-            &run.motions[first],
-            "a contour that does not come back to where it began",
-            "backwards it would begin elsewhere, where there is no start hole; cut it forwards, or close it",
-        ));
-    }
-    let before = settings.clone();
-    let (mut cuts, mut remarks, mut at_node): (Vec<Cut>, Vec<Motion>, Vec<Motion>) = Default::default();
-    for motion in run.motions {
-        match motion.act {
-            Act::Move { .. } => cuts.push(Cut {
-                motion,
-                settings: settings.clone(),
-                remarks: std::mem::take(&mut remarks),
-                at_node: std::mem::take(&mut at_node),
-                backwards: false,
-            }),
-            Act::Comment(_) | Act::Header(_) => remarks.push(motion),
-            _ if note(settings, &motion) => {}
-            _ => at_node.push(motion),
+impl Reverse {
+    /// A run cut backwards.
+    fn backwards(&mut self, run: Run) -> Result<Vec<Motion>, ContourError> {
+        let layout = run.layout();
+        // One straight move by itself is a way: between the pauses of a 3B program, or out behind a stop.
+        let is_way = matches!(run.cuts().collect::<Vec<_>>()[..], [(_, Element::Line { .. })]);
+        if let (false, false, Some((first, _))) = (layout.closed, is_way, run.cuts().next()) {
+            return Err(ContourError::at(
+                &run.motions[first],
+                "a contour that does not come back to where it began",
+                "backwards it would begin elsewhere, where there is no start hole; cut it forwards, or close it",
+            ));
         }
+        let settings = &mut self.settings;
+        let (mut cuts, mut remarks, mut at_node): (Vec<Cut>, Vec<Motion>, Vec<Motion>) = Default::default();
+        for motion in run.motions {
+            match motion.act {
+                Act::Move { .. } => cuts.push(Cut {
+                    motion,
+                    settings: settings.clone(),
+                    before: std::mem::replace(&mut self.on_move, path_of(settings)),
+                    remarks: std::mem::take(&mut remarks),
+                    at_node: std::mem::take(&mut at_node),
+                    backwards: false,
+                }),
+                Act::Comment(_) | Act::Header(_) => remarks.push(motion),
+                _ if note(settings, &motion) => {}
+                _ => at_node.push(motion),
+            }
+        }
+        if !is_way {
+            turn_round(&mut cuts, layout);
+        }
+        let mut motions = Vec::new();
+        for cut in cuts {
+            let wanted = if cut.backwards { with_path(cut.settings, cut.before) } else { cut.settings };
+            change(&mut self.in_force, &wanted, &cut.motion, &mut motions)?;
+            // A move run backwards comes to the node it began at.
+            let (before, behind) =
+                if cut.backwards { (Vec::new(), cut.at_node) } else { (cut.at_node, Vec::new()) };
+            motions.extend(before.into_iter().chain(cut.remarks).chain([cut.motion]).chain(behind));
+        }
+        // What was said behind the last cut comes behind the last cut; an offset or a taper waits for the next.
+        if let Some(last) = motions.last().cloned() {
+            let wanted = with_path(settings.clone(), path_of(&self.in_force));
+            change(&mut self.in_force, &wanted, &last, &mut motions)?;
+        }
+        motions.extend(remarks.into_iter().chain(at_node));
+        Ok(motions)
     }
-    turn_round(&mut cuts, layout);
-    let (mut motions, mut in_force) = (Vec::new(), before);
-    for cut in cuts {
-        change(&mut in_force, &cut.settings, &cut.motion, &mut motions)?;
-        // A move run backwards comes to the node it began at.
-        let (before, behind) =
-            if cut.backwards { (Vec::new(), cut.at_node) } else { (cut.at_node, Vec::new()) };
-        motions.extend(before.into_iter().chain(cut.remarks).chain([cut.motion]).chain(behind));
-    }
-    // What was said behind the last cut comes behind the last cut.
-    if let Some(last) = motions.last().cloned() {
-        change(&mut in_force, settings, &last, &mut motions)?;
-    }
-    motions.extend(remarks.into_iter().chain(at_node));
-    Ok(motions)
+}
+
+/// Whether it is an offset or a taper: what is put on and taken off along a move.
+fn is_of_path(motion: &Motion) -> bool {
+    matches!(motion.act, Act::Offset(_) | Act::Taper(_))
+}
+
+fn is_on(motion: &Motion) -> bool {
+    matches!(motion.act, Act::Offset(Offset::On { .. }) | Act::Taper(Taper::On { .. }))
+}
+
+/// The offset and the taper alone.
+fn path_of(settings: &Settings) -> Settings {
+    let of_path = settings.iter().filter(|(_, motion)| is_of_path(motion));
+    of_path.map(|(address, motion)| (address.clone(), motion.clone())).collect()
+}
+
+/// The settings with another offset and taper.
+fn with_path(mut settings: Settings, path: Settings) -> Settings {
+    settings.retain(|_, motion| !is_of_path(motion));
+    settings.extend(path);
+    settings
 }
 
 /// Puts in force what holds for a move.
@@ -255,7 +298,7 @@ fn other_side(act: Act) -> Act {
 mod tests {
     use super::*;
     use crate::geometry::Sense;
-    use crate::motion::{Side, Stop, Travel};
+    use crate::motion::{Side, Travel};
     use crate::place::Spot;
 
     fn said(act: Act) -> Motion {
@@ -288,7 +331,7 @@ mod tests {
     }
 
     fn reverse(motions: Vec<Motion>) -> Result<Vec<Motion>, ContourError> {
-        Reversed::new(motions.into_iter().map(Ok::<_, ContourError>)).collect()
+        reversed(motions.into_iter().map(Ok::<_, ContourError>)).collect()
     }
 
     /// What is done, briefly.
@@ -315,13 +358,32 @@ mod tests {
     fn a_contour_is_cut_backwards_from_its_own_hole() {
         let mut motions = vec![offset(Side::Left)];
         motions.extend(half_disc());
+        motions.insert(4, said(Act::Offset(Offset::Off)));
         motions.push(said(Act::Stop(Stop::End)));
         let backwards = reverse(motions.clone()).unwrap();
         assert_eq!(
             brief(&backwards),
-            ["Right", "2,2 Some(D)", "Clockwise 6,2 Some(D)", "2,2 None", "0,0 None", "Stop(End)"]
+            [
+                "Right",
+                "2,2 Some(D)",
+                "Clockwise 6,2 Some(D)",
+                "2,2 None",
+                "Offset(Off)",
+                "0,0 None",
+                "Stop(End)"
+            ]
         );
         assert_eq!(reverse(backwards).unwrap(), motions);
+    }
+
+    #[test]
+    fn a_way_between_pauses_is_gone_as_it_is() {
+        let mut motions = half_disc();
+        motions.push(said(Act::Stop(Stop::Pause)));
+        motions.push(cut((0.0, 0.0), (30.0, 0.0), None));
+        motions.push(said(Act::Stop(Stop::Pause)));
+        let told = brief(&reverse(motions).unwrap());
+        assert_eq!(told[4..], ["Stop(Pause)", "30,0 None", "Stop(Pause)"]);
     }
 
     #[test]
@@ -354,14 +416,14 @@ mod tests {
             [
                 "C001",
                 "C002",
+                "Right",
                 "2,2 Some(D)",
                 "M50",
-                "Right",
                 "the round side",
                 "Clockwise 6,2 Some(D)",
                 "Stop(Pause)",
-                "2,2 None",
                 "Offset(Off)",
+                "2,2 None",
                 "C001",
                 "0,0 None",
                 "C002",

@@ -6,6 +6,7 @@
 //! between two pauses is a run of its own.
 
 use std::borrow::Cow;
+use std::collections::VecDeque;
 
 use thiserror::Error;
 
@@ -68,22 +69,12 @@ pub struct Layout {
     pub closed: bool,
 }
 
-impl Run {
-    /// The elements cut, in order, each with its motion's place in [`Run::motions`].
-    pub fn cuts(&self) -> impl DoubleEndedIterator<Item = (usize, Element)> {
-        self.motions.iter().enumerate().filter_map(|(n, motion)| match motion.act {
-            Act::Move { element, .. } => Some((n, element)),
-            _ => None,
-        })
-    }
-
-    /// How the run is made up.
+impl Layout {
+    /// How moves are made up that go from each node to the next.
     ///
     /// An outline is what comes back to a node. Moves at both ends that lead there and back again are leads.
     #[must_use]
-    pub fn layout(&self) -> Layout {
-        let mut nodes: Vec<Point> = self.cuts().map(|(_, element)| element.start()).collect();
-        nodes.extend(self.cuts().next_back().map(|(_, element)| element.end()));
+    pub fn of(nodes: &[Point]) -> Self {
         let Some(moves) = nodes.len().checked_sub(1).filter(|&moves| moves > 0) else {
             return Layout { lead_in: 0, lead_out: 0, closed: false };
         };
@@ -106,21 +97,91 @@ impl Run {
         }
         Layout { lead_in: 0, lead_out: 0, closed: false }
     }
+}
 
-    /// Whether the wire is back where the outline, or the way to it, began, or has only gone straight.
+impl Run {
+    /// The elements cut, in order, each with its motion's place in [`Run::motions`].
+    pub fn cuts(&self) -> impl DoubleEndedIterator<Item = (usize, Element)> {
+        self.motions.iter().enumerate().filter_map(|(n, motion)| match motion.act {
+            Act::Move { element, .. } => Some((n, element)),
+            _ => None,
+        })
+    }
+
+    /// How the run is made up.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        let mut nodes: Vec<Point> = self.cuts().map(|(_, element)| element.start()).collect();
+        nodes.extend(self.cuts().next_back().map(|(_, element)| element.end()));
+        Layout::of(&nodes)
+    }
+
+    /// Whether the wire is back where the outline, or the way to it, began, or has only gone straight. With a flag a way
+    /// that goes straight leads to an outline.
     fn has_come_home(&self) -> bool {
+        if let [Motion { act: Act::Move { flag: Some(_), .. }, .. }, rest @ ..] = self.motions.as_slice()
+            && !rest.iter().any(|motion| matches!(motion.act, Act::Move { .. }))
+        {
+            return false;
+        }
         let Some((_, last)) = self.cuts().next_back() else { return true };
         let home = |(_, first): (usize, Element)| (first.start() - last.end()).norm() <= MEET_MM;
         self.cuts().nth(1).is_none() || self.cuts().take(1 + LEAD_MOVES_MAX).any(home)
     }
 }
 
-/// Cuts motions into portions.
+/// Gathers motions, given one at a time, into portions.
+#[derive(Debug, Default)]
+pub struct Gatherer {
+    run: Run,
+    moves: usize,
+}
+
+impl Gatherer {
+    /// Takes a motion; gives the run it ends, if it ends one, and the motion itself, if it is in none.
+    ///
+    /// # Errors
+    ///
+    /// When the run is longer than [`MOVES_MAX`].
+    pub fn give(&mut self, motion: Motion) -> Result<(Option<Run>, Option<Motion>), ContourError> {
+        let ends = match motion.act {
+            Act::Move { travel: Travel::Cut, .. } => {
+                self.moves += 1;
+                if self.moves > MOVES_MAX {
+                    let message = format!("a contour of more than {MOVES_MAX} moves");
+                    let help = "a contour is held whole for this; do it where the program is made";
+                    return Err(ContourError::at(&motion, message, help));
+                }
+                self.run.motions.push(motion);
+                return Ok((None, None));
+            }
+            Act::Move { travel: Travel::Rapid, .. } | Act::Stop(Stop::End) => true,
+            Act::Stop(Stop::Pause | Stop::Optional) => self.run.has_come_home(),
+            _ => false,
+        };
+        if self.run.motions.is_empty() {
+            return Ok((None, Some(motion)));
+        }
+        if ends {
+            return Ok((self.finish(), Some(motion)));
+        }
+        self.run.motions.push(motion);
+        Ok((None, None))
+    }
+
+    /// The run in work, at the end of the program.
+    pub fn finish(&mut self) -> Option<Run> {
+        self.moves = 0;
+        let run = std::mem::take(&mut self.run);
+        (!run.motions.is_empty()).then_some(run)
+    }
+}
+
+/// Cuts motions that are pulled into portions.
 #[derive(Debug)]
 pub struct Runs<I> {
     motions: I,
-    run: Run,
-    moves: usize,
+    gatherer: Gatherer,
     /// What ended the run, told behind it.
     behind: Option<Motion>,
 }
@@ -132,12 +193,7 @@ where
 {
     /// The portions of a program.
     pub fn new(motions: I) -> Self {
-        Self { motions, run: Run::default(), moves: 0, behind: None }
-    }
-
-    fn end(&mut self) -> Portion {
-        self.moves = 0;
-        Portion::Run(std::mem::take(&mut self.run))
+        Self { motions, gatherer: Gatherer::default(), behind: None }
     }
 }
 
@@ -153,35 +209,95 @@ where
             return Some(Ok(Portion::Between(behind)));
         }
         loop {
-            let motion = match self.motions.next() {
-                Some(Ok(motion)) => motion,
+            let given = match self.motions.next() {
+                Some(Ok(motion)) => self.gatherer.give(motion),
                 Some(Err(error)) => return Some(Err(error.into())),
-                None if self.run.motions.is_empty() => return None,
-                None => return Some(Ok(self.end())),
+                None => return self.gatherer.finish().map(|run| Ok(Portion::Run(run))),
             };
-            let ends = match motion.act {
-                Act::Move { travel: Travel::Cut, .. } => {
-                    self.moves += 1;
-                    if self.moves > MOVES_MAX {
-                        let message = format!("a contour of more than {MOVES_MAX} moves");
-                        let help = "a contour is held whole for this; do it where the program is made";
-                        return Some(Err(ContourError::at(&motion, message, help)));
-                    }
-                    self.run.motions.push(motion);
-                    continue;
+            match given {
+                Ok((None, None)) => {}
+                Ok((None, Some(motion))) => return Some(Ok(Portion::Between(motion))),
+                Ok((Some(run), behind)) => {
+                    self.behind = behind;
+                    return Some(Ok(Portion::Run(run)));
                 }
-                Act::Move { travel: Travel::Rapid, .. } | Act::Stop(Stop::End) => true,
-                Act::Stop(Stop::Pause | Stop::Optional) => self.run.has_come_home(),
-                _ => false,
-            };
-            if self.run.motions.is_empty() {
-                return Some(Ok(Portion::Between(motion)));
+                Err(error) => return Some(Err(error)),
             }
-            if ends {
-                self.behind = Some(motion);
-                return Some(Ok(self.end()));
+        }
+    }
+}
+
+/// Motions made into others, a portion of a program at a time: what [`Contourwise`] drives.
+pub trait Rework {
+    /// What becomes of a run.
+    ///
+    /// # Errors
+    ///
+    /// When its shape does not allow it.
+    fn run(&mut self, run: Run) -> Result<Vec<Motion>, ContourError>;
+
+    /// What becomes of something between runs: itself as a rule, with something before it, or nothing yet.
+    ///
+    /// # Errors
+    ///
+    /// When it does not allow it.
+    fn between(&mut self, motion: Motion) -> Result<Between, ContourError>;
+}
+
+/// What becomes of something between runs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Between {
+    /// One motion.
+    One(Motion),
+    /// Any number of them.
+    Several(Vec<Motion>),
+}
+
+/// A program reworked contour by contour.
+#[derive(Debug)]
+pub struct Contourwise<I, W> {
+    runs: Runs<I>,
+    rework: W,
+    ready: VecDeque<Motion>,
+}
+
+impl<I, E, W> Contourwise<I, W>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<ContourError>,
+    W: Rework,
+{
+    /// The program reworked.
+    pub fn new(motions: I, rework: W) -> Self {
+        Self { runs: Runs::new(motions), rework, ready: VecDeque::new() }
+    }
+}
+
+impl<I, E, W> Iterator for Contourwise<I, W>
+where
+    I: Iterator<Item = Result<Motion, E>>,
+    E: Into<ContourError>,
+    W: Rework,
+{
+    type Item = Result<Motion, ContourError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(motion) = self.ready.pop_front() {
+                return Some(Ok(motion));
             }
-            self.run.motions.push(motion);
+            match self.runs.next()? {
+                Ok(Portion::Between(motion)) => match self.rework.between(motion) {
+                    Ok(Between::One(motion)) => return Some(Ok(motion)),
+                    Ok(Between::Several(motions)) => self.ready = motions.into(),
+                    Err(error) => return Some(Err(error)),
+                },
+                Ok(Portion::Run(run)) => match self.rework.run(run) {
+                    Ok(motions) => self.ready = motions.into(),
+                    Err(error) => return Some(Err(error)),
+                },
+                Err(error) => return Some(Err(error)),
+            }
         }
     }
 }

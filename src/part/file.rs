@@ -3,7 +3,11 @@
 //! A key that is left out takes the value of the 1990 paper's printed run, and is named in [`PartFile::assumed`], so
 //! that nothing defaults quietly.
 
-use super::{Part, Rounding, StopWord, aim_named, start_hole};
+use super::{Format, Part, Rounding, StopWord, aim_named, start_hole};
+use std::sync::Arc;
+
+use crate::formats::gcode::Dialect;
+use crate::formats::gcode::dialect::BUILT_IN;
 use crate::keys::{Document, KeyError, PointOrWord, Section};
 use crate::rounding::Aim;
 use crate::shapes::cycloid_gear::{Direction, LeadIn, Trim};
@@ -26,6 +30,8 @@ pub const ROUNDINGS: [(&str, Rounding); 2] =
 /// Words of `end`.
 pub const STOP_WORDS: [(&str, StopWord); 4] =
     [("DD", StopWord::DD), ("D", StopWord::D), ("E", StopWord::E), ("none", StopWord::None)];
+/// Words of `format`.
+pub const FORMATS: [(&str, &str); 3] = [("3b", "3b"), ("4b", "4b"), ("gcode", "gcode")];
 /// Words of `interpolator`.
 pub const AIMS: [&str; 5] = ["any", "rotated", "mirrored", "strict", "exact"];
 
@@ -89,7 +95,22 @@ impl PartFile {
 
         offset(&part, &wire, &mut reader, &mut made)?;
 
-        either(&part, &output, "format", |s| s.word("format", &[("3b", ())]))?;
+        let format = either(&part, &output, "format", |s| s.word("format", &FORMATS))?;
+        let dialect = output.word("dialect", &BUILT_IN.map(|(name, _)| (name, name)))?;
+        made.format = match (format, dialect) {
+            (Some("gcode"), dialect) => {
+                let name = dialect.unwrap_or(BUILT_IN[0].0);
+                if dialect.is_none() {
+                    reader.assumed.push(format!("dialect = \"{name}\""));
+                }
+                Format::Gcode(dialect_named(name)?)
+            }
+            (_, Some(_)) => {
+                return Err(output.error("dialect", "`dialect` goes with `format = \"gcode\"`", None));
+            }
+            (Some("4b"), None) => Format::FourB,
+            (_, None) => Format::ThreeB,
+        };
         if let Some(rounding) = either(&part, &output, "rounding", |s| s.word("rounding", &ROUNDINGS))? {
             made.rounding = rounding;
         }
@@ -98,6 +119,16 @@ impl PartFile {
         })?;
         if let Some(aim) = aim {
             made.aim = aim;
+        }
+        if made.rounding == Rounding::PerBlock && made.format != Format::ThreeB {
+            return Err(output.error("rounding", "`rounding = \"per-block\"` goes with 3B", None));
+        }
+        if made.repeat > 1 && made.format == Format::FourB {
+            return Err(part.error(
+                "repeat",
+                "4B takes an outline once: it is held whole for its flags",
+                None,
+            ));
         }
         if let Some(end) = either(&part, &output, "end", |s| s.word("end", &STOP_WORDS))? {
             made.stop_word = end;
@@ -144,6 +175,15 @@ fn offset(
         }
     }
     Ok(())
+}
+
+/// A built-in dialect.
+///
+/// # Errors
+///
+/// Never in a tested build: the names are those of the table.
+pub fn dialect_named(name: &str) -> Result<Arc<Dialect>, KeyError> {
+    Dialect::named(name).unwrap_or_else(Dialect::generic).map(Arc::new)
 }
 
 /// A key that may stand in [part] or in the section it belongs to, but not in both.
@@ -209,7 +249,8 @@ offset = 0.07         # wire radius + spark gap; + outside (punch), - inside (di
 # side = "outside"    # or "inside"
 
 [output]
-format = "3b"
+format = "3b"              # "3b", "4b" (the outline, flagged for an offset keyed in), or "gcode"
+# dialect = "generic"      # of G-code: "generic", "fanuc", "charmilles", "sodick", "mitsubishi", "agie" or "integer-um"
 rounding = "closed-loop"   # or "per-block", as the paper rounds
 interpolator = "any"       # the control's method: "any", "rotated", "mirrored", "strict" or "exact"
 end = "DD"                 # stop word: "DD", "D", "E" or "none"

@@ -4,7 +4,10 @@
 //! tolerance is doubled and what has been kept is thinned again, so memory and the size of the picture are bounded however
 //! long the program is. Tolerances add up to less than twice the last one.
 
-use crate::drawing::{Outline, Thinning, Turn};
+use std::collections::HashSet;
+use std::hash::{DefaultHasher, Hasher as _};
+
+use crate::drawing::{Extent, Outline, Thinning, Turn};
 use crate::geometry::{Element, Point, Sense};
 use crate::units::Micrometres;
 
@@ -12,6 +15,9 @@ use crate::units::Micrometres;
 #[derive(Debug)]
 pub(super) struct Layer {
     exact: Vec<Element>,
+    /// Where among them the run in work begins.
+    run_from: usize,
+    seen: Seen,
     /// Once there are too many elements.
     thinned: Option<Thinned>,
     /// The outermost points: lowest and highest X, lowest and highest Y.
@@ -23,7 +29,7 @@ const EXACT_MAX: usize = 20_000;
 
 impl Layer {
     pub(super) fn new() -> Self {
-        Self { exact: Vec::new(), thinned: None, outermost: None }
+        Self { exact: Vec::new(), run_from: 0, seen: Seen::default(), thinned: None, outermost: None }
     }
 
     /// Draws an element; it goes on from the last one if it begins there.
@@ -40,6 +46,21 @@ impl Layer {
             }
             thinned.add(element);
         }
+    }
+
+    /// Ends a run: the same run again is not drawn.
+    pub(super) fn end_run(&mut self) {
+        if let Some(thinned) = &mut self.thinned {
+            thinned.end_run();
+        } else if !self.seen.is_new(self.exact[self.run_from..].iter().flat_map(bits)) {
+            self.exact.truncate(self.run_from);
+        }
+        self.run_from = self.exact.len();
+    }
+
+    /// The bounds of what has been drawn, mm.
+    pub(super) fn extent(&self) -> Option<Extent> {
+        Extent::of(self.outermost?.map(|point| [point.x, point.y]))
     }
 
     fn reach(&mut self, element: &Element) {
@@ -83,6 +104,35 @@ impl Layer {
     }
 }
 
+/// An element's numbers.
+fn bits(element: &Element) -> [u64; 7] {
+    let pair = |p: Point| [p.x.to_bits(), p.y.to_bits()];
+    let ([a, b], [c, d]) = (pair(element.start()), pair(element.end()));
+    match *element {
+        Element::Line { .. } => [a, b, c, d, 0, 0, 0],
+        Element::Arc { centre, sense, .. } => {
+            let [e, f] = pair(centre);
+            [a, b, c, d, e, f, if sense == Sense::Clockwise { 1 } else { 2 }]
+        }
+    }
+}
+
+/// Runs that have been drawn, by a digest of their numbers.
+#[derive(Debug, Default)]
+struct Seen(HashSet<u64>);
+
+/// So many runs are remembered; a program of more different ones draws a later one twice at worst.
+const SEEN_MAX: usize = 100_000;
+
+impl Seen {
+    fn is_new(&mut self, numbers: impl Iterator<Item = u64>) -> bool {
+        let mut hasher = DefaultHasher::new();
+        numbers.for_each(|number| hasher.write_u64(number));
+        let digest = hasher.finish();
+        if self.0.len() < SEEN_MAX { self.0.insert(digest) } else { !self.0.contains(&digest) }
+    }
+}
+
 /// Runs of elements that follow one another.
 fn outlines(elements: &[Element]) -> Vec<Outline> {
     let plain = |p: Point| [p.x, p.y];
@@ -111,20 +161,28 @@ fn outlines(elements: &[Element]) -> Vec<Outline> {
 pub(super) struct Thinned {
     tolerance_um: f64,
     runs: Vec<Vec<(i64, i64)>>,
+    seen: Seen,
     kept: usize,
     current: Option<Thinning>,
     last: Option<(i64, i64)>,
 }
 
-/// The most points of a layer: some 0.9 MB in an SVG.
-const POINTS_MAX: usize = 50_000;
+/// The most points of a layer: some 0.6 MB in an SVG.
+const POINTS_MAX: usize = 30_000;
 
 /// Where thinning begins, µm: below what a picture shows.
-const FINEST_UM: f64 = 0.8;
+pub(super) const FINEST_UM: f64 = 0.8;
 
 impl Thinned {
     pub(super) fn new() -> Self {
-        Self { tolerance_um: FINEST_UM, runs: Vec::new(), kept: 0, current: None, last: None }
+        Self {
+            tolerance_um: FINEST_UM,
+            runs: Vec::new(),
+            seen: Seen::default(),
+            kept: 0,
+            current: None,
+            last: None,
+        }
     }
 
     /// How far what is kept may be from what was added, µm.
@@ -165,13 +223,21 @@ impl Thinned {
         self.push(lattice(element.end()));
     }
 
-    fn end_run(&mut self) {
+    /// Ends a run: the same run again is not drawn.
+    pub(super) fn end_run(&mut self) {
         if let Some(run) = self.current.take() {
             let run = run.finish();
-            self.kept += run.len();
-            self.runs.push(run);
+            if self.seen.is_new(run.iter().flat_map(|&(x, y)| [x as u64, y as u64])) {
+                self.kept += run.len();
+                self.runs.push(run);
+            }
         }
         self.last = None;
+    }
+
+    /// Lets go the run in work.
+    pub(super) fn forget_run(&mut self) {
+        (self.current, self.last) = (None, None);
     }
 
     fn coarsen(&mut self) {
@@ -264,6 +330,22 @@ mod tests {
                 (drawn[0] - own[0]).abs() < 0.001 && (drawn[1] - own[1]).abs() < 0.001,
                 "{drawn:?} {own:?}"
             );
+        }
+    }
+
+    #[test]
+    fn a_part_repeated_is_drawn_once_and_as_finely() {
+        // Few cuts, and more than are drawn as they are.
+        for turns in [3, 20_000] {
+            let mut layer = Layer::new();
+            for _ in 0..turns {
+                let round: Vec<_> = spiral(10).collect();
+                round.iter().for_each(|element| layer.add(element));
+                round.iter().rev().for_each(|element| layer.add(&element.reversed()));
+                layer.end_run();
+            }
+            let (runs, off) = layer.finish();
+            assert!(runs.len() == 1 && off == 0.0, "{turns}: {} runs, {off} µm", runs.len());
         }
     }
 

@@ -22,7 +22,9 @@ pub(super) struct Marks {
     every: u64,
     kind: Kind,
     most: usize,
-    kept: Vec<Mark>,
+    /// With what says whether each is due: its block, or how many were offered before it.
+    kept: Vec<(u64, Mark)>,
+    offered: u64,
     /// Places of a fixed density that found no room.
     pub(super) left_out: u64,
 }
@@ -39,10 +41,10 @@ enum Kind {
 }
 
 impl Kind {
-    fn is_due(self, block: u64, every: u64) -> bool {
+    fn is_due(self, number: u64, every: u64) -> bool {
         match self {
-            Self::Numbers | Self::Fixed => block == 1 || block % every == 0,
-            Self::Between => block % every == BETWEEN % every,
+            Self::Numbers | Self::Fixed => number == 1 || number % every == 0,
+            Self::Between => number % every == BETWEEN % every,
         }
     }
 }
@@ -50,7 +52,7 @@ impl Kind {
 impl Marks {
     /// Numbers, at most so many, as evenly as may be.
     pub(super) fn up_to(most: usize) -> Self {
-        Self { every: 1, kind: Kind::Numbers, most, kept: Vec::new(), left_out: 0 }
+        Self { every: 1, kind: Kind::Numbers, most, kept: Vec::new(), offered: 0, left_out: 0 }
     }
 
     /// Marks between the numbers, at most so many.
@@ -64,7 +66,9 @@ impl Marks {
     }
 
     pub(super) fn offer(&mut self, mark: Mark) {
-        if self.every == 0 || !self.kind.is_due(mark.block, self.every) {
+        self.offered += 1;
+        let number = if self.kind == Kind::Between { self.offered } else { mark.block };
+        if self.every == 0 || !self.kind.is_due(number, self.every) {
             return;
         }
         if self.kept.len() == self.most {
@@ -74,17 +78,28 @@ impl Marks {
             }
             let (kind, every) = (self.kind, next_round(self.every));
             self.every = every;
-            self.kept.retain(|mark| kind.is_due(mark.block, every));
+            self.kept.retain(|(number, _)| kind.is_due(*number, every));
             // The same block again and again, as when a part is repeated without end, leaves no room.
-            if !kind.is_due(mark.block, every) || self.kept.len() == self.most {
+            if !kind.is_due(number, every) || self.kept.len() == self.most {
                 return;
             }
         }
-        self.kept.push(mark);
+        self.kept.push((number, mark));
     }
 
-    pub(super) fn kept(&self) -> &[Mark] {
-        &self.kept
+    pub(super) fn kept(&self) -> impl Iterator<Item = &Mark> {
+        self.kept.iter().map(|(_, mark)| mark)
+    }
+
+    /// Those that lie farther than so many model millimetres from all earlier ones.
+    pub(super) fn clear_of_each_other(&self, apart: f64) -> Vec<Mark> {
+        let mut shown: Vec<Mark> = Vec::new();
+        for mark in self.kept() {
+            if shown.iter().all(|other| (other.at - mark.at).norm() > apart) {
+                shown.push(*mark);
+            }
+        }
+        shown
     }
 
     /// Those whose numbers do not lie over an earlier one, in letters of a height; `pen` is model per page millimetre.
@@ -92,7 +107,7 @@ impl Marks {
     /// Each with how far its middle is from the path, page millimetres.
     pub(super) fn apart(&self, height: f64, pen: f64) -> Vec<(Mark, String, f64)> {
         let mut shown: Vec<([f64; 4], Mark, String, f64)> = Vec::new();
-        for mark in &self.kept {
+        for mark in self.kept() {
             let text = mark.block.to_string();
             let half = [text_width(&text, height) / 2.0 + GAP, height / 2.0 + GAP];
             let away = CLEAR + mark.aside.x.abs() * half[0] + mark.aside.y.abs() * half[1];
@@ -113,7 +128,7 @@ impl Marks {
 /// From the path to a number, page millimetres.
 const CLEAR: f64 = 0.4;
 
-/// The last digit of a block that is marked between numbers.
+/// The last digit of a cut that is marked between numbers.
 const BETWEEN: u64 = 7;
 
 /// Between two numbers, page millimetres.
@@ -144,18 +159,18 @@ mod tests {
     fn numbers_stand_at_round_distances_however_many_blocks_there_are() {
         let mut marks = Marks::up_to(40);
         (1..=100_000).for_each(|block| marks.offer(mark(block)));
-        let blocks: Vec<u64> = marks.kept().iter().map(|mark| mark.block).collect();
+        let blocks: Vec<u64> = marks.kept().map(|mark| mark.block).collect();
         assert_eq!((blocks[0], blocks[1], blocks[2], blocks.len()), (1, 10_000, 20_000, 11));
         let mut fixed = Marks::every(7);
         (1..=20).for_each(|block| fixed.offer(mark(block)));
-        assert_eq!(fixed.kept().iter().map(|mark| mark.block).collect::<Vec<_>>(), [1, 7, 14]);
+        assert_eq!(fixed.kept().map(|mark| mark.block).collect::<Vec<_>>(), [1, 7, 14]);
         let mut between = Marks::between(16);
         (1..=265).for_each(|block| between.offer(mark(block)));
-        assert!(between.kept().iter().all(|mark| mark.block % 20 == 7));
-        assert_eq!(between.kept().len(), 13);
+        assert!(between.kept().all(|mark| mark.block % 20 == 7));
+        assert_eq!(between.kept().count(), 13);
         let mut none = Marks::every(0);
         none.offer(mark(1));
-        assert!(none.kept().is_empty());
+        assert!(none.kept().next().is_none());
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! Elements cut into pieces that a block can count: at most 999 999 µm along its axis.
 
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
 use crate::formats::three_b::COUNT_MAX;
-use crate::geometry::{Element, Point, Vector};
+use crate::geometry::{Element, Point, Sense, Vector};
 
 /// The pieces of an element, in order; nearly always the element itself.
 pub(super) fn countable(element: Element) -> impl Iterator<Item = Element> {
@@ -15,7 +17,7 @@ pub(super) fn countable(element: Element) -> impl Iterator<Item = Element> {
         Element::Arc { start, centre, .. } => {
             let radius = (start - centre).norm();
             // A full turn is tried first, so that the sweep is worked out for long arcs only.
-            if 2.0 * std::f64::consts::PI * radius <= longest {
+            if TAU * radius <= longest || travel(&element) <= COUNT_MAX.millimetres() {
                 1.0
             } else {
                 (radius * element.sweep() / longest).ceil()
@@ -31,6 +33,20 @@ pub(super) fn countable(element: Element) -> impl Iterator<Item = Element> {
     })
 }
 
+/// The travel of an arc along X or Y, whichever is longer, mm.
+fn travel(element: &Element) -> f64 {
+    let Element::Arc { start, centre, sense, .. } = *element else { return 0.0 };
+    let (r, swept) = (start - centre, element.sweep());
+    let from = match sense {
+        Sense::CounterClockwise => libm::atan2(r.y, r.x),
+        Sense::Clockwise => -libm::atan2(r.y, r.x),
+    } + TAU;
+    // The integral of |sin| from 0: 2 for each half turn, and of the last one what is begun.
+    let along = |angle: f64| 2.0 * (angle / PI).floor() + 1.0 - libm::cos(angle - PI * (angle / PI).floor());
+    let between = |from: f64| along(from + swept) - along(from);
+    r.norm() * between(from).max(between(from + FRAC_PI_2))
+}
+
 /// The point at a fraction of the element's length.
 pub(super) fn at_fraction(element: &Element, fraction: f64) -> Point {
     match *element {
@@ -38,8 +54,8 @@ pub(super) fn at_fraction(element: &Element, fraction: f64) -> Point {
         Element::Arc { start, centre, sense, .. } => {
             let turn = element.sweep() * fraction;
             let (sin, cos) = libm::sincos(match sense {
-                crate::geometry::Sense::CounterClockwise => turn,
-                crate::geometry::Sense::Clockwise => -turn,
+                Sense::CounterClockwise => turn,
+                Sense::Clockwise => -turn,
             });
             let r: Vector = start - centre;
             centre + Vector::new(r.x * cos - r.y * sin, r.x * sin + r.y * cos)
@@ -58,7 +74,6 @@ pub(super) fn between(element: &Element, start: Point, end: Point) -> Element {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Sense;
 
     #[test]
     fn a_line_of_two_and_a_half_metres_takes_three_blocks() {
@@ -78,6 +93,9 @@ mod tests {
             sense: Sense::CounterClockwise,
         };
         assert_eq!(countable(circle(100.0)).count(), 1);
+        // Six digits count four radii.
+        assert_eq!(countable(circle(249.999)).count(), 1);
+        assert_eq!(countable(circle(250.0)).count(), 2);
         let pieces: Vec<_> = countable(circle(400.0)).collect();
         assert_eq!(pieces.len(), 3);
         for piece in &pieces {

@@ -18,7 +18,7 @@ pub(crate) const MODELS: [(Model, mock_controller::Model); 4] = [
 /// A line to anywhere within 30 mm, short ones as likely as long ones; ties and axes among them.
 pub(crate) fn line() -> impl Strategy<Value = String> {
     (0.0f64..4.5, 0.0f64..4.5, 1u8..=4, 0u8..6).prop_map(|(x, y, digit, kind)| {
-        let size = |log: f64| 10f64.powf(log) as u32;
+        let size = |log: f64| libm::pow(10.0, log) as u32;
         let (x, y) = (size(x), size(y));
         match kind {
             // At 45° the tie rule chooses G; along an axis the other number is 0 or left out.
@@ -35,16 +35,15 @@ pub(crate) fn line() -> impl Strategy<Value = String> {
 
 /// An arc of 3 µm to 3 mm radius that counts up to `turns` turns.
 pub(crate) fn arc(turns: f64) -> impl Strategy<Value = String> {
-    (0.5f64..3.5, 0.0f64..1.5708, 0.0f64..turns, 1u8..=4, any::<bool>(), any::<bool>()).prop_map(
-        |(log, angle, share, digit, clockwise, g)| {
-            let radius = 10f64.powf(log);
+    (0.5f64..3.5, 0.0f64..std::f64::consts::FRAC_PI_2, 0.0f64..turns, 1u8..=4, any::<bool>(), any::<bool>())
+        .prop_map(|(log, angle, share, digit, clockwise, g)| {
+            let radius = libm::pow(10.0, log);
             let (sin, cos) = libm::sincos(angle);
             let (x, y) = ((radius * cos).round(), (radius * sin).round());
             let j = ((4.0 * radius * share) as u32).max(1);
             let letters = if clockwise { "SR" } else { "NR" };
             format!("B{x}B{y}B{j}G{}{letters}{digit}", if g { 'X' } else { 'Y' })
-        },
-    )
+        })
 }
 
 /// The full circle from a point on an axis.
@@ -59,16 +58,16 @@ pub(crate) fn circle() -> impl Strategy<Value = String> {
 
 /// The motions of a program.
 pub(crate) fn motions(text: &str, model: Model) -> Vec<Motion> {
-    Motions::of_three_b(text.as_bytes(), model).map(|motion| motion.unwrap()).collect()
+    Motions::of_three_b(text.as_bytes(), model).map(|motion| motion.expect("the program is 3B")).collect()
 }
 
 /// Motions written as 3B.
 pub(crate) fn written(motions: &[Motion], aim: Aim) -> String {
     let mut writer = Writer::new(Form { aim, ..Form::default() });
     let mut text = Vec::new();
-    motions.iter().for_each(|motion| writer.write(motion, &mut text).unwrap());
-    writer.finish(&mut text).unwrap();
-    String::from_utf8(text).unwrap()
+    motions.iter().for_each(|motion| writer.write(motion, &mut text).expect("3B has room for it"));
+    writer.finish(&mut text).expect("a program can end");
+    String::from_utf8(text).expect("3B is ASCII")
 }
 
 /// Where each block of a program ends under one of the mock's models, µm from where it began; stop words aside.

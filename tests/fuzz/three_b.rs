@@ -6,7 +6,7 @@ use dripfeed::formats::three_b::read::{Entry, Item, Reader};
 use dripfeed::interpolator::Model;
 
 /// Pieces a program may be made of, well and badly.
-pub(crate) const PIECES: [&[u8]; 40] = [
+pub(crate) const PIECES: [&[u8]; 46] = [
     b"B9900B0B9900GXL1",
     b"B9900B0B39600GYNR1",
     b"b579 b6617\nb006617 y l2",
@@ -18,6 +18,13 @@ pub(crate) const PIECES: [&[u8]; 40] = [
     b"B300B400B001000B500GYDNR1",
     b"B0B5000B5000BDGYL2",
     b"B0B5000B5000BL0.5DDGYL2",
+    // A disc from a hole, with a flag; a square with a round corner.
+    b"B5000B0B5000BDGXL1B5000B0B20000B5000DGYNR1B5000B0B5000GXL3",
+    b"B5000B0B5000GXL1",
+    b"B0B5000B5000GYL2",
+    b"B5000B0B5000GXL3",
+    b"B0B5000B5000GYL4",
+    b"B0B1000B1000B1000DGYNR4",
     b"B",
     b"DD",
     b"D",

@@ -21,6 +21,8 @@ pub(super) struct Arc {
     pub shift: Nanometres,
     /// How far the radii may disagree.
     pub tolerance: i64,
+    /// Whether an arc whose radii disagree more is kept as it is.
+    pub is_kept: bool,
 }
 
 /// Why a block is no arc.
@@ -72,6 +74,9 @@ impl Arc {
         let fitting = [ArcCentre::FromStart, ArcCentre::Absolute, ArcCentre::ToStart]
             .into_iter()
             .find(|other| *other != rule && self.centre(*other).is_some_and(|c| self.agree(self.radii(c))));
+        if fitting.is_none() && self.is_kept && radii[0] > 0.0 {
+            return Ok(point(centre));
+        }
         let help = match fitting {
             Some(other) => format!(
                 "they agree with `arc_centre = \"{}\"`: choose it if the control reads so",
@@ -150,7 +155,16 @@ mod tests {
 
     fn arc(end: Nanometres, offset: [Option<i64>; 2], radius: Option<i64>) -> Arc {
         let sense = Sense::CounterClockwise;
-        Arc { start: [10 * MM, 0], end, sense, offset, radius, shift: [0, 0], tolerance: 3000 }
+        Arc {
+            start: [10 * MM, 0],
+            end,
+            sense,
+            offset,
+            radius,
+            shift: [0, 0],
+            tolerance: 3000,
+            is_kept: false,
+        }
     }
 
     fn centre(arc: Arc, rule: ArcCentre) -> Point {
@@ -205,5 +219,15 @@ mod tests {
         assert!(refused(arc([0, 0], [Some(1), None], Some(1))).contains("both R and I"));
         assert!(refused(arc([10 * MM, 0], [Some(0), None], None)).contains("radius 0"));
         assert!(arc([0, 0], [Some(1), None], None).element(ArcCentre::Absolute).is_err());
+    }
+
+    #[test]
+    fn a_wrong_arc_is_kept_on_request_unless_another_rule_for_centres_fits_it() {
+        let kept = |offset| Arc { is_kept: true, ..arc([-10 * MM, 0], offset, None) };
+        let wrong = kept([Some(-10 * MM + 5000), Some(0)]);
+        assert!(wrong.element(ArcCentre::FromStart).is_ok());
+        assert!(Arc { is_kept: false, ..wrong }.element(ArcCentre::FromStart).is_err());
+        let absolute = kept([Some(0), Some(5000)]);
+        assert!(absolute.element(ArcCentre::FromStart).is_err());
     }
 }

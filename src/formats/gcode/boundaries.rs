@@ -94,7 +94,9 @@ fn label(text: &[u8]) -> u64 {
     for (n, byte) in text.iter().enumerate() {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
-            return if n > 0 && *byte != b'.' { label } else { ASK };
+            // `N2 = 5` sets something, and a point makes another number of it.
+            let next = if *byte == b' ' { text.get(n + 1).copied().unwrap_or(b' ') } else { *byte };
+            return if n > 0 && next.is_ascii_alphabetic() { label } else { ASK };
         }
         if n > 8 {
             return ASK;

@@ -63,6 +63,8 @@ pub struct Dialect {
     pub semicolon: bool,
     /// Whether remarks may stand in brackets.
     pub brackets: bool,
+    /// Whether an arc whose radii disagree is read as it is, for someone else to judge; no dialect's, but its reader's.
+    pub keeps_wrong_arcs: bool,
     /// How programs are written.
     pub written: Written,
     program_letters: [bool; 26],

@@ -117,6 +117,12 @@ impl<R: Read> Iterator for Motions<R> {
 }
 
 impl<R: Read> Motions<R> {
+    /// The subprograms that have been called so far.
+    #[must_use]
+    pub fn called(&self) -> &[u32] {
+        &self.called
+    }
+
     /// Goes on behind an error, at the next line and as if the faulty block were not there; false where that cannot be.
     pub fn go_on(&mut self) -> bool {
         match self.failed_in.take() {
@@ -126,6 +132,24 @@ impl<R: Read> Motions<R> {
             }
             None => false,
         }
+    }
+
+    /// The next line as it stands, and whether it is a block: executed for what may be wrong with it alone, its motions
+    /// thrown away and subprograms not gone into. None at the end of the source.
+    ///
+    /// # Errors
+    ///
+    /// As the iterator's.
+    pub fn next_line(&mut self) -> Result<Option<(Line<'_>, bool)>, ReadError> {
+        let before = self.block;
+        let more = match self.state {
+            State::Done => false,
+            State::Running => self.main_line()?,
+            State::Behind { in_body } => self.line_behind(in_body)?,
+        };
+        self.ready.clear();
+        self.calls.clear();
+        Ok(more.then(|| (self.lines.line(), self.block > before)))
     }
 
     /// Executes the next line of the main program; false at the end of the source.

@@ -151,6 +151,9 @@ impl Machine {
         self.tell_offset(now);
         self.tell_taper(now)?;
         if let Some(word) = sense.position {
+            if upper.is_some() {
+                return Err(now.error(&word, "a G92 block has no second half", "leave the `:` out"));
+            }
             self.position(&word, &lengths, now)?;
         } else {
             self.travel(&lengths, upper, &sense, now)?;
@@ -256,7 +259,7 @@ impl Machine {
             b'G' => return self.code(word, self.dialect.g_code(word), words, now),
             b'M' => return self.code(word, self.dialect.m_code(word), words, now),
             b'X' | b'P' if sense.dwell.is_some() => return Ok(()),
-            b'P' | b'L' if sense.call.is_some() => return Ok(()),
+            b'P' | b'L' if sense.call.is_some() => return now.only_one(word, words),
             letter if sense.owner == Some(letter) => return Ok(()),
             b'J' if self.dialect.lone_j && is_alone(word, words) => {
                 now.tell(Act::Word(word.text(now.line.bytes).into()), word);
@@ -264,7 +267,11 @@ impl Machine {
             }
             _ => {}
         }
-        match self.dialect.role(word.letter) {
+        let role = self.dialect.role(word.letter);
+        if matches!(role, Role::Register | Role::OffsetValue | Role::Angle) {
+            now.only_one(word, words)?;
+        }
+        match role {
             Role::Length(place) => {
                 let place = usize::from(place);
                 if sense.position.is_some() && (place == I || place == J) && self.dialect.heights {
@@ -279,7 +286,7 @@ impl Machine {
                 }
                 let value = self.length(word, now)?;
                 if lengths[place].is_some() {
-                    return Err(now.error(word, "the block has this word already", "leave one of them out"));
+                    return Err(now.twice(word));
                 }
                 lengths[place] = Some(Length { value, word: *word });
             }

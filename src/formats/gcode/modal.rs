@@ -49,12 +49,12 @@ impl Modal {
         }
     }
 
-    /// Takes in the words of a block, as far as a `:`.
+    /// Takes in the words of a block; where a `:` parts the motions of the two ends, as far as that.
     #[inline]
     pub fn take_in(&mut self, words: &[Word], dialect: &Dialect) {
         for word in words {
             if word.letter != b'G' {
-                if word.kind == Kind::Colon {
+                if word.kind == Kind::Colon && dialect.pairs {
                     break;
                 }
                 continue;

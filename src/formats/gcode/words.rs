@@ -312,7 +312,9 @@ mod tests {
             .collect()
     }
 
-    fn numbers(line: &str) -> Vec<(char, Option<(i64, u8, bool)>)> {
+    type Written = (char, Option<(i64, u8, bool)>);
+
+    fn numbers(line: &str) -> Vec<Written> {
         let mut words = Vec::new();
         cut(line.as_bytes(), &mut words).unwrap();
         words

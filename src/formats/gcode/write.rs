@@ -7,9 +7,11 @@
 
 mod moves;
 mod spelling;
+mod texts;
 
 use super::dialect::Dialect;
 use super::modal::Mode;
+use crate::formats::losses::Losses;
 use crate::formats::{WriteError, Writer as WriterOfAnyFormat};
 use crate::motion::{Act, Motion, Offset, Side, Stop, Taper};
 use crate::place::Spot;
@@ -22,14 +24,21 @@ pub struct Writer {
     layout: Layout,
     /// The line in work: words that may share it with the next motion.
     line: Vec<u8>,
-    /// The block its words come from.
+    /// The block its words come from, and the line of the source.
     line_block: u64,
+    line_of: u64,
     /// Whether it holds offset and taper words alone, which go into the block of the next line.
     line_is_path: bool,
-    /// `/`, with its level, for the next block.
+    /// Whether nothing but remarks may follow in it.
+    line_is_full: bool,
+    /// `/`, with its level, that the next line takes.
     skip: Vec<u8>,
-    /// The N word for the next block.
+    /// The N word that the next line takes.
     number: Vec<u8>,
+    /// The block both are of, and the line of the source.
+    waiting_for: (u64, u64),
+    /// Remarks for the end of the line in work, or of the one the number waits for.
+    tail: Vec<u8>,
     last_number: u64,
     is_opened: bool,
     is_ended: bool,
@@ -41,6 +50,7 @@ pub struct Writer {
     mode: Option<Mode>,
     /// What registers were set to here, by number.
     register: Option<(u32, Micrometres)>,
+    losses: Losses,
 }
 
 /// Choices about how a program is written that do not depend on the control.
@@ -50,6 +60,9 @@ pub struct Layout {
     pub number_step: Option<u32>,
     /// Leaves out what is in force already: the word of motion, an axis that does not move.
     pub suppress: bool,
+    /// The register for an offset that is a number, in a dialect that only has registers; a remark says what is to be keyed
+    /// into it. None: such an offset is refused.
+    pub register: Option<u32>,
 }
 
 impl Writer {
@@ -67,9 +80,13 @@ impl Writer {
             layout,
             line: Vec::new(),
             line_block: 0,
+            line_of: 0,
             line_is_path: false,
+            line_is_full: false,
             skip: Vec::new(),
             number: Vec::new(),
+            waiting_for: (0, 0),
+            tail: Vec::new(),
             last_number: 0,
             is_opened: false,
             is_ended: false,
@@ -78,7 +95,14 @@ impl Writer {
             lean: Position::default(),
             mode: None,
             register: None,
+            losses: Losses::default(),
         }
+    }
+
+    /// What stands in the program as a remark, because the dialect has no word for it.
+    #[must_use]
+    pub fn lost(&self) -> &Losses {
+        &self.losses
     }
 }
 
@@ -91,17 +115,26 @@ impl WriterOfAnyFormat for Writer {
                 "take the end out, or what follows",
             ));
         }
+        // Where the line of the source is not known there is one for all.
+        let comes_from = (motion.block, motion.spot.line);
+        if comes_from != self.waiting_for {
+            self.settle_what_waits(text);
+        }
+        if self.line_is_full && !matches!(motion.act, Act::Comment(_)) {
+            self.flush(text);
+        }
+        if self.line.is_empty() {
+            self.line_of = motion.spot.line;
+        }
         match &motion.act {
-            Act::Header(header) => self.header(header, text),
+            Act::Header(header) => self.header(header, motion, text),
             Act::Comment(remark) => return self.comment(remark, motion, text),
-            Act::Word(word) => self.word(word, motion, text),
-            // What is not known is not put among words that are.
-            Act::Unknown(word) if self.is_ended => return self.comment(word, motion, text),
-            Act::Unknown(word) => self.word(word, motion, text),
+            Act::Word(word) | Act::Unknown(word) => return self.word(word, motion, text),
             Act::Move { travel, element, upper, flag } => {
                 if flag.is_some() && !self.flags_told {
                     self.flags_told = true;
                     self.flush(text);
+                    self.losses.add("4B flag", motion.spot);
                     self.remark(
                         b"4B marks convex and concave arcs; here the control sees it by itself",
                         text,
@@ -127,14 +160,14 @@ impl WriterOfAnyFormat for Writer {
                 words.push(b'X');
                 spelling::decimal(*seconds, &mut words);
                 self.put(&words, motion.block, false);
-                self.flush(text);
+                self.line_is_full = true;
             }
         }
         Ok(())
     }
 
     fn finish(&mut self, text: &mut Vec<u8>) -> Result<(), WriteError> {
-        self.flush_all(text);
+        self.settle(text);
         if !self.is_ended {
             self.end(text);
         }
@@ -143,107 +176,9 @@ impl WriterOfAnyFormat for Writer {
 }
 
 impl Writer {
-    /// `%`, the word that names a program, a skip or a number of the next block; any other header becomes a remark.
-    fn header(&mut self, header: &[u8], text: &mut Vec<u8>) {
-        let digits = header.get(1..).unwrap_or_default();
-        let is_number = !digits.is_empty() && digits.iter().all(u8::is_ascii_digit);
-        match header.first().copied() {
-            Some(b'/') if header.len() <= 2 => {
-                self.flush_all(text);
-                self.skip = header.to_vec();
-            }
-            Some(b'N' | b'n') if is_number => {
-                self.flush(text);
-                if !self.number.is_empty() {
-                    // A block that said nothing which is written elsewhere keeps its line.
-                    self.open(text);
-                    self.flush_all(text);
-                }
-                self.number = header.to_vec();
-            }
-            Some(b'%') => {
-                self.flush_all(text);
-                if self.is_opened && !self.is_ended {
-                    self.end(text);
-                }
-                text.extend(header.iter().filter(|b| !matches!(b, b'\r' | b'\n')));
-                self.end_line(text);
-            }
-            Some(letter)
-                if is_number
-                    && self.dialect.names_program(letter.to_ascii_uppercase())
-                    && !self.is_opened =>
-            {
-                self.flush_all(text);
-                text.extend_from_slice(header);
-                self.end_line(text);
-            }
-            _ => {
-                self.flush(text);
-                self.remark(header, text);
-            }
-        }
-    }
-
-    fn comment(&mut self, remark: &[u8], motion: &Motion, text: &mut Vec<u8>) -> Result<(), WriteError> {
-        if !(self.dialect.brackets || self.dialect.semicolon) {
-            let help = "a dialect file allows them with `brackets` or `semicolon`";
-            return Err(refused(motion.spot, "the dialect has no remarks", help));
-        }
-        let bracketed =
-            self.dialect.brackets && !remark.iter().any(|b| matches!(b, b'(' | b')' | b'\r' | b'\n'));
-        if bracketed && !self.line.is_empty() && self.line_block == motion.block {
-            self.line.extend_from_slice(b" (");
-            self.line.extend_from_slice(remark);
-            self.line.push(b')');
-            return Ok(());
-        }
-        self.flush(text);
-        if !self.dialect.semicolon && remark.contains(&b')') {
-            let help = "take the bracket out of the remark";
-            return Err(refused(
-                motion.spot,
-                "a remark with a bracket, and the dialect has only brackets",
-                help,
-            ));
-        }
-        self.remark(remark, text);
-        Ok(())
-    }
-
-    /// A remark on lines of its own.
-    fn remark(&self, remark: &[u8], text: &mut Vec<u8>) {
-        for line in remark.split(|b| matches!(b, b'\n' | b'\r')) {
-            if self.dialect.brackets && !line.iter().any(|b| matches!(b, b'(' | b')')) {
-                text.push(b'(');
-                text.extend_from_slice(line);
-                text.push(b')');
-            } else {
-                text.push(b';');
-                text.extend_from_slice(line);
-            }
-            self.end_line(text);
-        }
-    }
-
-    /// A word that is kept as it stands.
-    fn word(&mut self, word: &[u8], motion: &Motion, text: &mut Vec<u8>) {
-        self.open(text);
-        if motion.block != self.line_block || self.line_is_path {
-            self.flush(text);
-        }
-        // A line end within would make two blocks of it.
-        let word: Vec<u8> = word.iter().map(|b| if matches!(b, b'\n' | b'\r') { b' ' } else { *b }).collect();
-        self.put(&word, motion.block, false);
-        let assigns = word.contains(&b'=');
-        if assigns {
-            self.flush(text);
-        }
-    }
-
     fn offset(&mut self, offset: &Offset, motion: &Motion, text: &mut Vec<u8>) -> Result<(), WriteError> {
         self.open(text);
-        self.make_room(motion.block, text);
+        self.make_room(*b"G4", motion.block, text);
         let Offset::On { side, distance, register } = *offset else {
             self.put(b"G40", motion.block, true);
             return Ok(());
@@ -258,6 +193,7 @@ impl Writer {
             Side::Left => b"G41".to_vec(),
             Side::Right => b"G42".to_vec(),
         };
+        let register = register.or(distance.and(self.layout.register));
         match (register, distance, self.dialect.register, self.dialect.offset_value) {
             (None, Some(distance), _, Some(letter)) => {
                 self.gap(&mut words);
@@ -273,8 +209,10 @@ impl Writer {
                     spelling::register(&self.dialect, register, &mut set);
                     set.push(b'=');
                     spelling::length(&self.dialect, distance, &mut set);
-                    self.put(&set, motion.block, false);
-                    self.flush(text);
+                    self.apart(text, |writer, text| {
+                        writer.put(&set, motion.block, false);
+                        writer.flush(text);
+                    });
                 }
                 self.gap(&mut words);
                 words.push(letter);
@@ -305,13 +243,12 @@ impl Writer {
             return Err(refused(motion.spot, "the dialect has no word for a taper", help));
         };
         self.open(text);
-        self.make_room(motion.block, text);
+        self.make_room(*b"G5", motion.block, text);
         let Taper::On { side, angle } = *taper else {
             self.put(b"G50", motion.block, true);
             return Ok(());
         };
-        // NaN is none either.
-        if !(angle.abs() < 90.0) {
+        if !angle.is_finite() || angle.abs() >= 90.0 {
             return Err(refused(
                 motion.spot,
                 "the wire cannot lean so far",
@@ -351,9 +288,12 @@ impl Writer {
 
     /// The first block: unit and distance mode.
     fn open(&mut self, text: &mut Vec<u8>) {
-        if self.is_opened {
-            return;
+        if !self.is_opened {
+            self.apart(text, Self::say_modes);
         }
+    }
+
+    fn say_modes(&mut self, text: &mut Vec<u8>) {
         self.is_opened = true;
         let mut words = Vec::new();
         if let Some(code) = self.dialect.written.unit_word {
@@ -361,16 +301,23 @@ impl Writer {
             self.gap(&mut words);
         }
         words.extend_from_slice(if self.dialect.written.incremental { b"G91" } else { b"G90" });
-        let skip = std::mem::take(&mut self.skip);
-        // The number of the block that said all this before is its own only if nothing else is waiting for it.
-        self.put_unnumbered(&words);
+        self.put(&words, self.waiting_for.0, false);
         self.flush(text);
-        self.skip = skip;
     }
 
-    /// Ends the line in work unless offset and taper of this block can go on in it.
-    fn make_room(&mut self, block: u64, text: &mut Vec<u8>) {
-        if self.line_block != block && !self.line_is_path {
+    /// Writes a line that takes neither the number nor the skip nor the remarks that wait for another.
+    fn apart(&mut self, text: &mut Vec<u8>, write: impl FnOnce(&mut Self, &mut Vec<u8>)) {
+        let skip = std::mem::take(&mut self.skip);
+        let number = std::mem::take(&mut self.number);
+        let tail = std::mem::take(&mut self.tail);
+        write(self, text);
+        (self.skip, self.number, self.tail) = (skip, number, tail);
+    }
+
+    /// Ends the line in work unless a word of this group, offset or taper, can go on in it.
+    fn make_room(&mut self, group: [u8; 2], block: u64, text: &mut Vec<u8>) {
+        let is_there = self.line.windows(2).any(|pair| pair == group);
+        if is_there || self.line_block != block && !self.line_is_path {
             self.flush(text);
         }
     }
@@ -387,7 +334,10 @@ impl Writer {
             }
             if !number.is_empty() {
                 start.append(&mut number);
-                self.gap(&mut start);
+                // What is no word would go on in the number.
+                if self.dialect.written.blanks || !words.first().is_some_and(u8::is_ascii_alphabetic) {
+                    start.push(b' ');
+                }
             }
             self.line = start;
         } else {
@@ -402,35 +352,53 @@ impl Writer {
         self.line_block = block;
     }
 
-    /// Adds words to a line that takes no number from the source.
-    fn put_unnumbered(&mut self, words: &[u8]) {
-        let number = std::mem::take(&mut self.number);
-        self.put(words, 0, false);
-        self.number = number;
-    }
-
     /// Ends the line in work, if there is one.
     fn flush(&mut self, text: &mut Vec<u8>) {
         if self.line.is_empty() {
             return;
         }
         text.append(&mut self.line);
+        text.append(&mut self.tail);
         if self.dialect.written.semicolon {
             text.push(b';');
         }
-        self.line_is_path = false;
+        (self.line_is_path, self.line_is_full) = (false, false);
         self.end_line(text);
     }
 
-    /// Ends the line in work; a skip or number that no block has taken stands alone.
-    fn flush_all(&mut self, text: &mut Vec<u8>) {
+    /// A number, skip or remark of another block that no line has taken stands in one of its own.
+    fn settle_what_waits(&mut self, text: &mut Vec<u8>) {
+        if !(self.skip.is_empty() && self.number.is_empty()) {
+            self.settle(text);
+        }
+    }
+
+    /// Ends the line in work; a number, skip or remark that no line of its block has taken stands in one of its own.
+    fn settle(&mut self, text: &mut Vec<u8>) {
         self.flush(text);
-        if self.skip.is_empty() && (self.number.is_empty() || self.layout.number_step.is_some()) {
-            self.number.clear();
+        if self.skip.is_empty() && self.number.is_empty() {
             return;
+        }
+        if !self.is_opened && !self.number.is_empty() && self.skip.is_empty() {
+            // That block is likely to have said the same.
+            return self.say_modes(text);
+        }
+        self.open(text);
+        if self.layout.number_step.is_some() {
+            // The number alone says nothing, the skip of nothing neither.
+            self.skip.clear();
+            self.number.clear();
         }
         self.line.append(&mut self.skip);
         self.line.append(&mut self.number);
+        if self.line.is_empty() {
+            if !self.tail.is_empty() {
+                text.extend_from_slice(self.tail.trim_ascii_start());
+                self.tail.clear();
+                self.end_line(text);
+            }
+            return;
+        }
         self.flush(text);
     }
 

@@ -108,31 +108,27 @@ impl<R: io::Read> Motions<R> {
         if let Some(waiting) = self.waiting.take() {
             return self.travel(waiting).map(Some);
         }
-        loop {
-            let Some(entry) = self.reader.next_entry()? else { return Ok(None) };
-            let act = match entry {
-                Entry::Item(Item::Block(block)) => {
-                    self.block += 1;
-                    let beyond = self.reader.beyond();
-                    let this = Move { block, flag: beyond.flag };
-                    let Some(Fourth::Ratio(ratio)) = beyond.fourth else {
-                        return self.travel(this).map(Some);
-                    };
-                    self.waiting = Some(this);
-                    let mut text = b"L".to_vec();
-                    ratio.write(&mut text);
-                    Act::Word(text.into())
-                }
-                Entry::Item(Item::StopWord("D")) => Act::Stop(Stop::Pause),
-                Entry::Item(Item::StopWord(_)) => Act::Stop(Stop::End),
-                Entry::Comment => Act::Comment(self.reader.text().into()),
-                Entry::Header => Act::Header(self.reader.text().into()),
-                // A number that only counts the blocks says nothing that the count does not.
-                Entry::Number if counts_as(self.reader.text(), self.block + 1) => continue,
-                Entry::Number => Act::Word(numbered(self.reader.text())),
-            };
-            return Ok(Some(self.told(act)));
-        }
+        let Some(entry) = self.reader.next_entry()? else { return Ok(None) };
+        let act = match entry {
+            Entry::Item(Item::Block(block)) => {
+                self.block += 1;
+                let beyond = self.reader.beyond();
+                let this = Move { block, flag: beyond.flag };
+                let Some(Fourth::Ratio(ratio)) = beyond.fourth else {
+                    return self.travel(this).map(Some);
+                };
+                self.waiting = Some(this);
+                let mut text = b"L".to_vec();
+                ratio.write(&mut text);
+                Act::Word(text.into())
+            }
+            Entry::Item(Item::StopWord("D")) => Act::Stop(Stop::Pause),
+            Entry::Item(Item::StopWord(_)) => Act::Stop(Stop::End),
+            Entry::Comment => Act::Comment(self.reader.text().into()),
+            Entry::Header => Act::Header(self.reader.text().into()),
+            Entry::Number => Act::Header(numbered(self.reader.text())),
+        };
+        Ok(Some(self.told(act)))
     }
 
     fn told(&self, act: Act) -> Motion {
@@ -250,21 +246,7 @@ fn millimetres(at: Position) -> Point {
     Point::new(at.x.millimetres(), at.y.millimetres())
 }
 
-/// Whether a line number says no more than the count of blocks.
-fn counts_as(digits: &[u8], block: u64) -> bool {
-    let mut number = 0u64;
-    for digit in digits {
-        let Some(next) =
-            number.checked_mul(10).and_then(|n| n.checked_add(u64::from(digit.wrapping_sub(b'0'))))
-        else {
-            return false;
-        };
-        number = next;
-    }
-    number == block
-}
-
-/// A line number as a word.
+/// A line number as a header, as G-code's are.
 fn numbered(digits: &[u8]) -> Text {
     [b"N", digits].concat().into()
 }

@@ -17,7 +17,7 @@ pub(in crate::formats) mod path;
 use std::borrow::Cow;
 
 use super::read::{Entry, Reader};
-use super::{StopWord, Style};
+use super::{Block, StopWord, Style};
 use crate::formats::WriteError;
 use crate::formats::losses::Losses;
 use crate::geometry::{Element, Point};
@@ -39,15 +39,15 @@ pub struct Form {
     pub end: StopWord,
     /// What becomes of comments and headers.
     pub remarks: Remarks,
-    /// Whether `N 12:` stands before each block.
-    pub numbers: bool,
+    /// Whether `N 12:` stands before a block.
+    pub numbers: Numbers,
 }
 
 impl Default for Form {
     /// Six digits of J, right for every model of control, `DD` at the end, no remarks, no numbers.
     fn default() -> Self {
         let (aim, end) = (Aim::Any, StopWord::DD);
-        Self { style: Style::default(), aim, end, remarks: Remarks::LeftOut, numbers: false }
+        Self { style: Style::default(), aim, end, remarks: Remarks::LeftOut, numbers: Numbers::LeftOut }
     }
 }
 
@@ -62,6 +62,17 @@ pub enum Remarks {
     Semicolons,
 }
 
+/// Which blocks are numbered, as CAM listings have it: there are controls that take no numbers.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Numbers {
+    /// None; those of the source are left out and counted.
+    LeftOut,
+    /// Those that were in the source, with the same numbers.
+    AsRead,
+    /// All, from 1; those of the source give way.
+    All,
+}
+
 /// Writes 3B.
 #[derive(Debug)]
 pub struct Writer {
@@ -71,8 +82,8 @@ pub struct Writer {
     ended: bool,
     /// Blocks written.
     blocks: u64,
-    /// A line number the source gave the next block, out of order.
-    number: Option<Box<[u8]>>,
+    /// The digits of the number the source gave the next line, and where they stand.
+    number: Option<(Box<[u8]>, Spot)>,
 }
 
 impl Writer {
@@ -107,12 +118,14 @@ impl Writer {
         self.path.chooser.stands()
     }
 
-    fn travel(
+    /// Goes along an element; `spell` writes a block without its number and line end.
+    pub(in crate::formats) fn travel(
         &mut self,
         travel: Travel,
         element: Element,
         spot: Spot,
         text: &mut Vec<u8>,
+        spell: impl Fn(&Block, &mut Vec<u8>),
     ) -> Result<(), WriteError> {
         if self.ended {
             return Err(refusal(
@@ -122,21 +135,16 @@ impl Writer {
             ));
         }
         within_reach(&element, spot)?;
-        let (form, blocks, number) = (self.form, &mut self.blocks, &mut self.number);
+        let (numbers, blocks, number) = (self.form.numbers, &mut self.blocks, &mut self.number);
         let way = self.path.go(travel, element, spot, |line| {
             if let Line::Block(block) = line {
                 *blocks += 1;
-                if form.numbers {
-                    match number.take() {
-                        Some(digits) => {
-                            text.extend_from_slice(b"N ");
-                            text.extend_from_slice(&digits);
-                        }
-                        None => text.extend_from_slice(format!("N{:4}", *blocks).as_bytes()),
-                    }
-                    text.extend_from_slice(b": ");
+                match (numbers, number.take()) {
+                    (Numbers::All, _) => push_number(blocks.to_string().as_bytes(), text),
+                    (Numbers::AsRead, Some((digits, _))) => push_number(&digits, text),
+                    (Numbers::AsRead, None) | (Numbers::LeftOut, _) => {}
                 }
-                form.style.write(block, text);
+                spell(block, text);
             } else {
                 text.push(b'D');
             }
@@ -150,8 +158,22 @@ impl Writer {
         Ok(())
     }
 
+    /// Keeps the number of the next block or stop word.
+    fn numbered(&mut self, digits: &[u8], spot: Spot) {
+        if self.form.numbers != Numbers::AsRead {
+            self.losses.add("line number", spot);
+        } else if let Some((_, unused)) = self.number.replace((digits.into(), spot)) {
+            self.losses.add("line number of a line that has no block", unused);
+        }
+    }
+
+    /// Counts what had no room.
+    pub(in crate::formats) fn lose(&mut self, kind: &'static str, spot: Spot) {
+        self.losses.add(kind, spot);
+    }
+
     /// Writes a comment on a line of its own, if there is room for one.
-    fn remark(&self, words: &[u8], text: &mut Vec<u8>) -> bool {
+    pub(in crate::formats) fn remark(&self, words: &[u8], text: &mut Vec<u8>) -> bool {
         let brackets = match self.form.remarks {
             Remarks::LeftOut => return false,
             Remarks::Brackets => !words.contains(&b')'),
@@ -186,13 +208,20 @@ impl Writer {
                     self.losses.add("stop on request (M01), written as a stop in any case (D)", spot);
                 }
                 self.path.pause();
+                if let Some((digits, _)) = self.number.take() {
+                    push_number(&digits, text);
+                }
                 text.extend_from_slice(b"D\n");
             }
         }
     }
 
     fn end(&mut self, text: &mut Vec<u8>) {
+        let number = self.number.take();
         if !std::mem::replace(&mut self.ended, true) && self.form.end != StopWord::None {
+            if let Some((digits, _)) = number {
+                push_number(&digits, text);
+            }
             text.extend_from_slice(self.form.end.text().as_bytes());
             text.push(b'\n');
         }
@@ -213,7 +242,10 @@ impl crate::formats::Writer for Writer {
                 spot,
                 "put the offset into the path first, or write 4B",
             )),
-            &Act::Move { travel, element, .. } => self.travel(travel, element, spot, text),
+            &Act::Move { travel, element, .. } => {
+                let style = self.form.style;
+                self.travel(travel, element, spot, text, |block, text| style.write(block, text))
+            }
             Act::Offset(Offset::On { .. }) => Err(refusal(
                 "3B describes the wire's own path; a 3B control adds no offset",
                 spot,
@@ -233,14 +265,8 @@ impl crate::formats::Writer for Writer {
                 self.losses.add("dwell", spot);
                 Ok(())
             }
-            Act::Word(word) => {
-                match word.strip_prefix(b"N") {
-                    Some(digits) if self.form.numbers && digits.iter().all(u8::is_ascii_digit) => {
-                        self.number = Some(digits.into());
-                    }
-                    Some(_) => self.losses.add("line number", spot),
-                    None => self.losses.add("word", spot),
-                }
+            Act::Word(_) => {
+                self.losses.add("word", spot);
                 Ok(())
             }
             Act::Unknown(_) => {
@@ -254,7 +280,9 @@ impl crate::formats::Writer for Writer {
                 Ok(())
             }
             Act::Header(words) => {
-                if !self.header(words, text) {
+                if let Some(digits) = line_number(words) {
+                    self.numbered(digits, spot);
+                } else if !self.header(words, text) {
                     self.losses.add("header line", spot);
                 }
                 Ok(())
@@ -267,6 +295,23 @@ impl crate::formats::Writer for Writer {
         Ok(())
     }
 }
+
+/// The digits of a line number, told as a header `N12`.
+fn line_number(words: &[u8]) -> Option<&[u8]> {
+    let (b'N' | b'n', digits) = words.split_first()? else { return None };
+    (!digits.is_empty() && digits.iter().all(u8::is_ascii_digit)).then_some(digits)
+}
+
+/// Writes a line number as listings have it: `N  12: `.
+fn push_number(digits: &[u8], text: &mut Vec<u8>) {
+    text.push(b'N');
+    text.extend(std::iter::repeat_n(b' ', NUMBER_WIDTH.saturating_sub(digits.len())));
+    text.extend_from_slice(digits);
+    text.extend_from_slice(b": ");
+}
+
+/// As wide as the numbers of the listings seen.
+const NUMBER_WIDTH: usize = 4;
 
 pub(in crate::formats) fn refusal(
     message: impl Into<String>,
@@ -398,7 +443,7 @@ mod tests {
             Act::Comment(words(b"two")),
             Act::Header(words(b"%")),
             Act::Word(words(b"C001")),
-            Act::Word(words(b"N12")),
+            Act::Header(words(b"N12")),
             Act::Unknown(words(b"Q7")),
             Act::Dwell(0.5),
             Act::Stop(Stop::Optional),
@@ -417,19 +462,27 @@ mod tests {
     #[test]
     fn comments_headers_and_numbers_survive_where_there_is_room_for_them() {
         let listing = "%\n*****\nStart Point = 0.0, 0.0 ; X , Y\n(one (of two)\nN   1: B5000B0B005000GXL1\n; 5.000, 0.000\n\
-                       N 40: B0B5000B005000GYL2\n(\u{96f6}\u{4ef6})\nDD\n%\n";
+                       N 40: B0B5000B005000GYL2\nB7000B0B7000GXL1\n(\u{96f6}\u{4ef6})\nN  41: DD\n%\n";
         let read = |text: &str| -> Vec<Motion> {
             let motions = Motions::of_three_b(text.as_bytes(), Model::Rotated);
             motions.map(|motion| Motion { spot: Spot::default(), ..motion.unwrap() }).collect()
         };
         for remarks in [Remarks::Brackets, Remarks::Semicolons] {
             let aim = Aim::One(Model::Rotated);
-            let form = Form { remarks, numbers: true, aim, ..Form::default() };
+            let form = Form { remarks, numbers: Numbers::AsRead, aim, ..Form::default() };
             let (text, writer) = write(form, &read(listing)).unwrap();
             assert!(writer.lost().is_empty(), "{:?}", writer.lost());
             assert_eq!(read(&text), read(listing), "{text}");
-            assert!(text.contains("N   1: B5000B0") && text.contains("N 40: B0B5000"), "{text}");
+            assert!(text.contains("N   1: B5000B0") && text.contains("N  40: B0B5000"), "{text}");
+            assert!(text.contains("\nB7000B0B007000GXL1\n") && text.contains("N  41: DD"), "{text}");
         }
+        let (text, writer) = write(
+            Form { numbers: Numbers::All, aim: Aim::One(Model::Rotated), ..Form::default() },
+            &read(listing),
+        )
+        .unwrap();
+        assert!(text.contains("N   2: B0B5000B005000GYL2\nN   3: B7000B0"), "{text}");
+        assert!(lost(&writer).contains(&("line number", 3)), "{:?}", writer.lost());
         // A header of another format would be no header here.
         let foreign = [motion(Act::Header(b"O1234".as_slice().into()))];
         let form = Form { remarks: Remarks::Brackets, ..Form::default() };

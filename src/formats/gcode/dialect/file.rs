@@ -48,6 +48,7 @@ impl Dialect {
             return_ends: switch(&program, "m99_ends")?,
             semicolon: switch(&program, "semicolon")?,
             brackets: switch(&program, "brackets")?,
+            keeps_wrong_arcs: false,
             written: Written {
                 micrometres: word(&written, "numbers", &[("point", false), ("um", true)])?,
                 padded: needed(&written, "padded", written.whole("padded", 0..=9)?)? as usize,
@@ -287,8 +288,11 @@ fn letter(section: &Section<'_>, key: &'static str) -> Result<Option<u8>, KeyErr
     }
 }
 
-/// The words of a text, each with its letter and code; a letter 0 for a word of several letters.
-fn list<'a>(section: &Section<'a>, key: &'static str) -> Result<Vec<(&'a str, u8, Option<usize>)>, KeyError> {
+/// A word with its letter and code; a letter 0 for a word of several letters.
+type Listed<'a> = (&'a str, u8, Option<usize>);
+
+/// The words of a text.
+fn list<'a>(section: &Section<'a>, key: &'static str) -> Result<Vec<Listed<'a>>, KeyError> {
     let text = needed(section, key, section.text(key)?)?;
     Ok(text
         .split_ascii_whitespace()

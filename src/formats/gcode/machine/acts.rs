@@ -54,6 +54,16 @@ impl Now<'_> {
         )
     }
 
+    /// Refuses the second word of a letter in a block.
+    pub(super) fn only_one(&self, word: &Word, words: &[Word]) -> Result<(), ReadError> {
+        let has_another = words.iter().any(|w| w.letter == word.letter && w.at < word.at);
+        if has_another { Err(self.twice(word)) } else { Ok(()) }
+    }
+
+    pub(super) fn twice(&self, word: &Word) -> ReadError {
+        self.error(word, "the block has this word already", "leave one of them out")
+    }
+
     pub(super) fn macro_program(&self, word: &Word) -> ReadError {
         self.error(word, "macro program: expand first", "a program of plain blocks is needed here")
     }

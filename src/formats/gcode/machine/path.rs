@@ -31,12 +31,14 @@ impl Machine {
                 self.at[axis] = given.value;
             }
         }
+        // Heights alone place nothing.
+        let is_placed = lengths[X].is_some() || lengths[Y].is_some();
         for (axis, place) in [U, V].into_iter().enumerate() {
             if let Some(given) = lengths[place] {
                 self.lean[axis] = given.value;
             }
         }
-        self.is_placed = true;
+        self.is_placed |= is_placed;
         if self.dialect.heights {
             let mut text = b"G92".to_vec();
             for letter in [b'I', b'J'] {
@@ -144,6 +146,7 @@ impl Machine {
             radius: lengths[R].map(|l| l.value),
             shift: self.shift,
             tolerance: self.dialect.arc_tolerance(self.modal.unit),
+            is_kept: self.dialect.keeps_wrong_arcs,
         };
         arc.element(self.dialect.arc_centre).map_err(|wrong| now.error_of_block(wrong.message, wrong.help))
     }
@@ -199,6 +202,7 @@ impl Machine {
                 radius: None,
                 shift: [0, 0],
                 tolerance: self.dialect.arc_tolerance(self.modal.unit),
+                is_kept: false,
             };
             match arc.element(ArcCentre::FromStart) {
                 Ok(element) => return Ok(Some(element)),

@@ -31,6 +31,9 @@ impl Writer {
         let spot = motion.spot;
         self.open(text);
         let start = node(element.start(), spot)?;
+        if !self.line_is_path && self.line_block != motion.block {
+            self.flush(text);
+        }
         let at = match self.at {
             Some(at) => at,
             None => self.begin_at(start, motion.block, text),
@@ -63,8 +66,8 @@ impl Writer {
             _ if self.dialect.pairs => self.pair(&lower, upper.as_ref()),
             _ => self.leaning(&lower, upper.as_ref(), spot)?,
         };
-        let joins = lower.centre.is_none() && self.line_is_path || self.line_block == motion.block;
-        if !joins || lower.centre.is_some() && self.line_is_path {
+        // An offset is switched on along a line.
+        if lower.centre.is_some() && self.line_is_path {
             self.flush(text);
         }
         self.put(&words, motion.block, false);
@@ -80,13 +83,12 @@ impl Writer {
         self.axes(b"XY", start, &mut words);
         // What waits to share the block of the motion goes on waiting.
         let waiting = std::mem::take(&mut self.line);
-        let (is_path, number, skip) =
-            (self.line_is_path, std::mem::take(&mut self.number), std::mem::take(&mut self.skip));
-        let waiting_block = self.line_block;
-        self.put(&words, block, false);
-        self.flush(text);
+        let (is_path, waiting_block) = (self.line_is_path, self.line_block);
+        self.apart(text, |writer, text| {
+            writer.put(&words, block, false);
+            writer.flush(text);
+        });
         (self.line, self.line_is_path, self.line_block) = (waiting, is_path, waiting_block);
-        (self.number, self.skip) = (number, skip);
         start
     }
 

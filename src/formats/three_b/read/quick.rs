@@ -62,8 +62,7 @@ fn number(line: &[u8], at: &mut usize, digits_max: usize) -> Option<Micrometres>
     let rest = line.get(*at..)?;
     let (&b'B', rest) = rest.split_first()? else { return None };
     let mut value = 0;
-    let mut count = 0;
-    for byte in rest {
+    for (count, byte) in rest.iter().enumerate() {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
             *at += 1 + count;
@@ -73,7 +72,6 @@ fn number(line: &[u8], at: &mut usize, digits_max: usize) -> Option<Micrometres>
             return None;
         }
         value = value * 10 + i64::from(digit);
-        count += 1;
     }
     None
 }

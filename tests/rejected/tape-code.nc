@@ -1,0 +1,10 @@
+G90 G21
+G92 X-5. Y0.
+; STRAIGHT
+G01 X0. Y0.
+X10.
+Y10.
+X0.
+Y0.
+; BACK
+M02
