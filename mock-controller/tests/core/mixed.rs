@@ -1,7 +1,7 @@
 //! 4B programs hold 3B blocks: moves, lead-outs, straight sides; and the same text may run together or hold a listing's
 //! comments.
 
-use mock_controller::{Kind, Model, Settings};
+use mock_controller::{Kind, Model, Settings, Taper};
 
 use crate::watch::{four_b, watch};
 use crate::writer::{Order, Writer, ell};
@@ -86,7 +86,7 @@ fn the_wrong_flag_on_the_inside_corner_is_found_at_any_offset_but_0() {
 
 #[test]
 fn a_die_of_the_second_papers_measures_is_cut_at_its_f_and_taper() {
-    // Reconstruction: a slot with ends of R 10 and a shoulder of R 1, F = 0.15/2 + 0.014 − 0.03 = 0.059 inside.
+    // A reconstruction, of its measures only: an end of R 10 and corners of R 1, α = 4°, H2 = 100, F = 0.15/2 + 0.014 − 0.03 = 0.059 inside.
     let mut writer = Writer::new(Order::FlagFirst);
     let quarter = std::f64::consts::FRAC_PI_2;
     writer.lead_in(10_000, 0, "D");
@@ -98,9 +98,17 @@ fn a_die_of_the_second_papers_measures_is_cut_at_its_f_and_taper() {
     writer.line(0, -10_000);
     writer.arc(Kind::CounterClockwise, "D", (0.0, 0.0), (10_000.0, 0.0), quarter);
     writer.line(0, 0);
-    let settings = Settings { ..four_b(-59.0) };
+    let taper = Some(Taper { degrees: 4.0, height_um: 100_000.0 });
+    let settings = Settings { taper, ..four_b(-59.0) };
     let (report, watch) = watch(settings, &(writer.text + "DD\n"));
     assert_eq!((report.blocks, report.alarm, report.end_um), (9, None, [0, 0]));
+    assert_eq!(report.upper_end_um, Some([0, 0]));
+    // The wire leans by the same angle everywhere on the outline: 100 · tan 4° is 6.993.
+    let leaning = watch.upper.iter().filter(|upper| (2..=8).contains(&upper.0));
+    for &(block, [x, y], [u, v]) in leaning {
+        let apart = (((x - u) as f64).powi(2) + ((y - v) as f64).powi(2)).sqrt();
+        assert!((apart - 6992.7).abs() < 8.0, "block {block}: {apart} at {x}, {y}");
+    }
     for (found, wanted) in watch.bounds(2..=8).into_iter().zip([-20_941, 9941, -9941, 9941]) {
         assert!((found - wanted).abs() <= 1, "{found} for {wanted}");
     }

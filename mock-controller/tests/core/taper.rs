@@ -71,11 +71,23 @@ fn above_an_outline_with_an_inside_corner_every_side_is_shifted_by_the_differenc
 }
 
 #[test]
-fn what_the_upper_guide_cannot_cut_is_an_alarm_as_below() {
-    // R 5 with A 6.99.
-    let program = "B5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nDD\n";
-    let report = run(tapered(0.0, PAPER), &mut Sender::of(program).window(4096));
-    assert_eq!(report.alarm.as_deref(), Some("radius"));
+fn beyond_the_apex_the_upper_guide_runs_on_the_other_side_of_the_centre() {
+    // R 5 with A 6.99: 1.993 beyond it; and with A the radius itself, where the guide stands still.
+    let program = "B5000BB5000B0DGXL1\nB5000B0B20000B5000DGYNR1\nB5000BB5000GXL3\nDD\n";
+    let (report, watched) = watch(tapered(0.0, PAPER), program);
+    assert_eq!((report.alarm, report.blocks, report.upper_end_um), (None, 3, Some([0, 0])));
+    assert_eq!((report.pulses, report.upper_pulses), (50_000, Some(10 * 1993)));
+    for &(block, [x, y], [u, v]) in &watched.upper {
+        let apart = ((x - u) as f64).hypot((y - v) as f64);
+        assert!(block != 2 || (apart - 6993.0).abs() < 4.0, "{apart} at {x}, {y}");
+    }
+    let level = Taper { degrees: 45.0, height_um: 5000.0 };
+    let (report, _) = watch(tapered(0.0, level), program);
+    assert_eq!((report.alarm, report.pulses, report.upper_pulses), (None, 50_000, Some(0)));
+}
+
+#[test]
+fn a_lead_in_without_a_flag_tells_no_sense() {
     let unflagged = circle("D").replace("B0DGXL1", "GXL1");
     let report = run(tapered(0.0, PAPER), &mut Sender::of(unflagged).window(4096));
     assert_eq!(report.alarm.as_deref(), Some("taper"));

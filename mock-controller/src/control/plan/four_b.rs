@@ -19,7 +19,9 @@
 //!   lead-in. It goes from the shifted end to its nominal end: back in the start hole the wire stands where F = 0 leaves it.
 //! - A line that goes on along the tangent past the contour's start is an overlap, and shifted.
 //! - With a taper A keyed in, the upper guide's wire is cut beside the same outline at F − A (`D` on the lead-in) or F + A
-//!   (`DD`), under the same rules; over the start hole the wire is vertical.
+//!   (`DD`), under the same rules; over the start hole the wire is vertical. Nothing is cut up there: where A is more
+//!   than an arc's radius the wires cross at the cone's apex, and the guide runs on the other side of the centre. (The
+//!   paper's die has R 1 and A 6.99.)
 //! - A contour of lines alone tells no side, and an arc without a flag no radius: alarms, not guesses.
 //!
 //! Source: domain/2, "The 4B block".
@@ -210,11 +212,9 @@ impl FourBPlan {
             Flag::D => 1.0,
             Flag::DD => -1.0,
         };
-        for offset in [self.offset_um, self.upper_um] {
-            let becomes = radius + grows * offset;
-            if becomes <= 0.0 {
-                return Err(("radius", format!("{block}: R {radius} µm becomes {becomes} µm")));
-            }
+        let becomes = radius + grows * self.offset_um;
+        if becomes <= 0.0 {
+            return Err(("radius", format!("{block}: R {radius} µm becomes {becomes} µm")));
         }
         let Shape::Arc { turn, .. } = held.element.shape else {
             return Ok(());
@@ -252,6 +252,11 @@ impl FourBPlan {
             let to = shifted_node(Some(&held.element), next, side * offset)?;
             Some(match held.element.shape {
                 Shape::Line => Path::To(to.rounded()),
+                Shape::Arc { turn, .. }
+                    if (held.element.size() + turn.sign() * side * offset).abs() < APEX_UM =>
+                {
+                    Path::To(to.rounded())
+                }
                 Shape::Arc { centre, turn, sweep } => {
                     Path::Round { centre: centre.rounded(), turn, sweep, to, ends: None }
                 }
@@ -314,6 +319,9 @@ impl Held {
 
 /// How far R may be from what X and Y give: half a micron each, and a writer's choice among neighbours (a guess).
 const RADIUS_SLACK_UM: f64 = 5.0;
+
+/// A radius so small that whole µm do not tell where on the circle a point stands: the guide stands at the apex.
+const APEX_UM: f64 = 2.0;
 
 /// How near its start a contour counts as closed: the drift of blocks rounded one by one (domain/1: 1 µm; domain/2: up
 /// to 6.7 µm an arc).
