@@ -182,7 +182,7 @@ fn what_the_registers_hold_is_the_offset_of_the_program() {
         assert!(a.len() == b.len() && a.iter().zip(b).all(off), "{a:?}\n{b:?}");
     };
     near(&other.ends[..half_of_rough], &rough.ends[..half_of_rough]);
-    let behind = |cut: &Cut| cut.ends[cut.ends.len() - 4..].to_vec();
+    let behind = |cut: &Cut| cut.ends[cut.ends.len() - 2..].to_vec();
     near(&behind(&other), &behind(&skim));
 }
 
