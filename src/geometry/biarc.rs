@@ -114,8 +114,8 @@ pub fn fit(curve: &impl Curve, fit: &Fit) -> Result<Vec<Element>, FitError> {
             last = walk.start();
         }
         let ends = [node, last];
-        let lines = |count_max| pieces(curve, &stretch, fit, ends, Shape::Chord, count_max);
-        let biarcs = || pieces(curve, &stretch, fit, ends, Shape::Biarc, ELEMENTS_MAX);
+        let lines = |count_max| pieces(curve, stretch, fit, ends, Shape::Chord, count_max);
+        let biarcs = || pieces(curve, stretch, fit, ends, Shape::Biarc, ELEMENTS_MAX);
         let made = match fit.elements {
             Elements::Lines => lines(ELEMENTS_MAX)?,
             Elements::Biarcs => biarcs()?,

@@ -144,17 +144,13 @@ impl Spline {
         for level in 1..=p {
             if level == p {
                 let width = self.knots[span + 1] - self.knots[span];
-                for axis in 0..3 {
-                    slope[axis] = p as f64 * (d[p][axis] - d[p - 1][axis]) / width;
-                }
+                slope = std::array::from_fn(|axis| p as f64 * (d[p][axis] - d[p - 1][axis]) / width);
             }
             for j in (level..=p).rev() {
                 let low = self.knots[span - p + j];
                 let high = self.knots[span + 1 + j - level];
                 let share = if high > low { (t - low) / (high - low) } else { 0.0 };
-                for axis in 0..3 {
-                    d[j][axis] = d[j - 1][axis] * (1.0 - share) + d[j][axis] * share;
-                }
+                d[j] = std::array::from_fn(|axis| d[j - 1][axis] * (1.0 - share) + d[j][axis] * share);
             }
         }
         (d[p], slope)

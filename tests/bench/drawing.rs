@@ -116,7 +116,7 @@ fn wave() -> Spline {
 
 fn drawing(entities: &[String]) -> String {
     let mut text = String::from(
-        "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n8\n0\n2\nHOLE\n70\n0\n10\n0\n20\n0\n30\n0\n3\nHOLE\n1\n\n0\nCIRCLE\n8\n0\n10\n0\n20\n0\n30\n0\n40\n1.5\n0\nENDBLK\n8\n0\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n",
+        "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n100\nAcDbEntity\n8\n0\n100\nAcDbBlockBegin\n2\nHOLE\n70\n0\n10\n0\n20\n0\n30\n0\n3\nHOLE\n1\n\n0\nCIRCLE\n100\nAcDbEntity\n8\n0\n100\nAcDbCircle\n10\n0\n20\n0\n30\n0\n40\n1.5\n0\nENDBLK\n100\nAcDbEntity\n8\n0\n100\nAcDbBlockEnd\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n",
     );
     text.extend(entities.iter().map(String::as_str));
     text.push_str("0\nENDSEC\n0\nEOF\n");
@@ -125,7 +125,7 @@ fn drawing(entities: &[String]) -> String {
 
 fn line(a: [f64; 2], b: [f64; 2]) -> String {
     format!(
-        "0\nLINE\n5\nFF\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbLine\n10\n{}\n20\n{}\n30\n0\n11\n{}\n21\n{}\n31\n0\n",
+        "0\nLINE\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbLine\n10\n{}\n20\n{}\n30\n0\n11\n{}\n21\n{}\n31\n0\n",
         a[0], a[1], b[0], b[1]
     )
 }
@@ -144,16 +144,19 @@ fn mixed(count: usize) -> Vec<String> {
         for (cx, cy, from) in [(46.0, 4.0, 270), (46.0, 26.0, 0), (4.0, 26.0, 90), (4.0, 4.0, 180)] {
             let [cx, cy] = p(cx, cy);
             let to = from + 90;
-            entities.push(format!("0\nARC\n5\nFF\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbCircle\n10\n{cx}\n20\n{cy}\n30\n0\n40\n4\n100\nAcDbArc\n50\n{from}\n51\n{to}\n"));
+            entities.push(format!("0\nARC\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbCircle\n10\n{cx}\n20\n{cy}\n30\n0\n40\n4\n100\nAcDbArc\n50\n{from}\n51\n{to}\n"));
         }
         for k in 0..4 {
             let [cx, cy] = p(8.0 + 8.0 * f64::from(k), 6.0);
-            entities.push(format!("0\nCIRCLE\n8\nPARTS\n10\n{cx}\n20\n{cy}\n30\n0\n40\n2.25\n"));
+            entities.push(format!(
+                "0\nCIRCLE\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbCircle\n10\n{cx}\n20\n{cy}\n30\n0\n40\n2.25\n"
+            ));
             let [cx, cy] = p(8.0 + 8.0 * f64::from(k), 24.0);
-            entities.push(format!("0\nINSERT\n8\nPARTS\n2\nHOLE\n10\n{cx}\n20\n{cy}\n30\n0\n50\n30\n"));
+            entities.push(format!("0\nINSERT\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbBlockReference\n2\nHOLE\n10\n{cx}\n20\n{cy}\n30\n0\n50\n30\n"));
         }
         for k in 0..2 {
-            let mut slot = String::from("0\nLWPOLYLINE\n8\nPARTS\n90\n4\n70\n1\n");
+            let mut slot =
+                String::from("0\nLWPOLYLINE\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbPolyline\n90\n4\n70\n1\n");
             let off = 11.0 * f64::from(k);
             for (a, b, bulge) in [(8.0, 13.0, 0.0), (14.0, 13.0, 1.0), (14.0, 17.0, 0.0), (8.0, 17.0, 1.0)] {
                 let [a, b] = p(a + off, b);
@@ -163,10 +166,12 @@ fn mixed(count: usize) -> Vec<String> {
         }
         let [cx, cy] = p(36.0, 15.0);
         entities.push(format!(
-            "0\nELLIPSE\n8\nPARTS\n10\n{cx}\n20\n{cy}\n30\n0\n11\n3\n21\n1\n31\n0\n40\n0.5\n41\n0\n42\n{}\n",
+            "0\nELLIPSE\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbEllipse\n10\n{cx}\n20\n{cy}\n30\n0\n11\n3\n21\n1\n31\n0\n40\n0.5\n41\n0\n42\n{}\n",
             std::f64::consts::TAU
         ));
-        let mut spline = String::from("0\nSPLINE\n8\nPARTS\n70\n8\n71\n3\n72\n11\n73\n7\n74\n0\n");
+        let mut spline = String::from(
+            "0\nSPLINE\n100\nAcDbEntity\n8\nPARTS\n100\nAcDbSpline\n70\n8\n71\n3\n72\n11\n73\n7\n74\n0\n",
+        );
         for knot in [0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4] {
             let _ = write!(spline, "40\n{knot}\n");
         }

@@ -220,8 +220,7 @@ impl Ends {
     fn collect(&self, first: u32, loops: bool, pieces: &mut [Option<Piece>]) -> Chain {
         let mut chain: Option<Chain> = None;
         let mut enter = first;
-        loop {
-            let Some(piece) = pieces[enter as usize / 2].take() else { break };
+        while let Some(piece) = pieces[enter as usize / 2].take() {
             let Piece { elements, layer, line, travel, .. } = piece;
             let forward = enter.is_multiple_of(2);
             let oriented: Box<dyn Iterator<Item = Element>> = if forward {

@@ -284,7 +284,7 @@ fn a_chain_of_pieces_shorter_than_the_tolerance_stays_whole() {
     let count = 10_000;
     let at = |n: usize| {
         let angle = 2.0 * PI * (n % count) as f64 / count as f64;
-        (angle.cos(), angle.sin())
+        (libm::cos(angle), libm::sin(angle))
     };
     let (contours, report) = joined((0..count).map(|n| line(at(n), at(n + 1))), &as_drawn());
     assert!(report.is_empty());

@@ -263,7 +263,7 @@ impl Probe {
         }
     }
 
-    fn from_ends(&self, p: Point) -> f64 {
+    fn to_nearest_end(&self, p: Point) -> f64 {
         (p - self.start).norm_squared().min((p - self.end).norm_squared()).sqrt()
     }
 }
@@ -281,8 +281,8 @@ impl Probes {
             (Some(one), Some(other)) => one.min(other),
             (Some(one), None) | (None, Some(one)) => one,
             (None, None) => {
-                let first = self.first.from_ends(p);
-                second.map_or(first, |second| first.min(second.from_ends(p)))
+                let first = self.first.to_nearest_end(p);
+                second.map_or(first, |second| first.min(second.to_nearest_end(p)))
             }
         }
     }

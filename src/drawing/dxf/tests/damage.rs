@@ -39,10 +39,10 @@ fn a_file_cut_off_anywhere_is_an_error() {
         "0 CIRCLE|10 0|20 0|40 1|0 POLYLINE|66 1|0 VERTEX|10 0|20 0|0 VERTEX|10 9|20 0|0 SEQEND|0 INSERT|2 B|10 0|20 0",
     );
     let whole = text.trim_end().len();
-    assert!(read(text[..whole].as_bytes(), &Options::default()).is_ok());
+    assert!(read(&text.as_bytes()[..whole], &Options::default()).is_ok());
     for end in 0..whole {
         assert!(
-            read(text[..end].as_bytes(), &Options::default()).is_err(),
+            read(&text.as_bytes()[..end], &Options::default()).is_err(),
             "cut off after {:?}",
             &text[..end]
         );
