@@ -307,3 +307,50 @@ fn an_open_contours_corners_are_sharp_between_its_ends_only() {
     assert!(ends.iter().zip(&expected).all(|(a, b)| (a - b).norm() < 1e-9), "{ends:?}");
     assert!((found.outlines[0].path.start() - p(0.0, -1.0)).norm() < 1e-9);
 }
+
+#[test]
+fn corners_that_point_at_each_other_stay_round_where_their_points_would_come_too_near() {
+    // Two corners on a diagonal, 2.2 apart: a wire beside them passes at 1, and their points would be 0.8 from the other.
+    let near = 10.0 + 2.2 / 2f64.sqrt();
+    let path = polygon(&[
+        (0.0, 0.0),
+        (10.0, 0.0),
+        (10.0, 10.0),
+        (5.0, 10.0),
+        (5.0, 22.0),
+        (near, 22.0),
+        (near, near),
+        (20.0, near),
+        (20.0, 30.0),
+        (0.0, 30.0),
+    ]);
+    let found = offset(&path, -1.0, Corners::Sharp { limit: 1.5 }).unwrap();
+    assert_eq!((found.outlines.len(), found.unreached.len()), (1, 0));
+    let arcs = found.outlines[0].path.elements().iter().filter(|way| matches!(way, Element::Arc { .. }));
+    let centres: Vec<Point> = arcs.map(|arc| arc.extent()[0]).collect();
+    assert_eq!(centres.len(), 2, "{centres:?}");
+}
+
+#[test]
+fn an_arc_over_a_wall_that_goes_on_tells_half_the_way_to_the_wall() {
+    // A room with a pocket under an arc: the wall below belongs to both and is touched in the room.
+    let radius = (9.0f64 + 9.2 * 9.2).sqrt();
+    let mouth = (radius * radius - 1.0).sqrt() - 9.2;
+    let path = Path::new(vec![
+        Element::Line { start: p(0.0, 0.0), end: p(14.0, 0.0) },
+        Element::Arc {
+            start: p(14.0, 0.0),
+            end: p(10.0, mouth),
+            centre: p(11.0, -9.2),
+            sense: Sense::CounterClockwise,
+        },
+        Element::Line { start: p(10.0, mouth), end: p(10.0, 6.0) },
+        Element::Line { start: p(10.0, 6.0), end: p(0.0, 6.0) },
+        Element::Line { start: p(0.0, 6.0), end: p(0.0, 0.0) },
+    ])
+    .unwrap();
+    let found = offset(&path, 0.5, Corners::Round).unwrap();
+    let [pocket] = found.unreached[..] else { panic!("{:?}", found.unreached) };
+    assert_eq!((pocket.first, pocket.last), (1, 1));
+    assert!((pocket.largest - (radius - 9.2) / 2.0).abs() < 1e-4, "{pocket:?} {}", (radius - 9.2) / 2.0);
+}
