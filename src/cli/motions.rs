@@ -286,7 +286,8 @@ impl Text {
 impl Read for Text {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if self.at == self.line.len() {
-            (self.line.clear(), self.at = 0);
+            self.line.clear();
+            self.at = 0;
             while self.line.len() < buffer.len().min(BUFFER) {
                 match self.program.pull(&mut self.line).map_err(io::Error::other)? {
                     Some(_) => self.line.push(b'\n'),
