@@ -243,7 +243,10 @@ impl Plot {
         let nothing = Extent { min: [0.0; 2], max: [0.0; 2] };
         let seen = extent.unwrap_or(nothing);
         let pen = seen.width().max(seen.height()).max(0.001) / PART_SPAN;
-        let mut page = Page { pen, seen, part: part.unwrap_or(seen), sketch: Sketch::new() };
+        let part_or_all = part.unwrap_or(seen);
+        // What is written round the part stands clear of the wire.
+        let seen = seen.grown(self.options.wire.unwrap_or(0.0) / 2.0);
+        let mut page = Page { pen, seen, part: part_or_all, sketch: Sketch::new() };
 
         let mut thinned_um = 0.0f64;
         let mut runs = |layer: Layer| {

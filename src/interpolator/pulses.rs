@@ -112,7 +112,7 @@ impl Iterator for Pulses {
                 }
             }
             Way::Exact { .. } => {
-                while let Some(position) = self.next() {
+                for position in self {
                     all = each(all, position);
                 }
             }

@@ -43,7 +43,7 @@ enum Kind {
 impl Kind {
     fn is_due(self, number: u64, every: u64) -> bool {
         match self {
-            Self::Numbers | Self::Fixed => number == 1 || number % every == 0,
+            Self::Numbers | Self::Fixed => number == 1 || number.is_multiple_of(every),
             Self::Between => number % every == BETWEEN % every,
         }
     }
