@@ -106,7 +106,8 @@ fn a_die_of_the_second_papers_measures_is_cut_at_its_f_and_taper() {
     // The wire leans by the same angle everywhere on the outline: 100 · tan 4° is 6.993.
     let leaning = watch.upper.iter().filter(|upper| (2..=8).contains(&upper.0));
     for &(block, [x, y], [u, v]) in leaning {
-        let apart = (((x - u) as f64).powi(2) + ((y - v) as f64).powi(2)).sqrt();
+        let (across, along) = ((x - u) as f64, (y - v) as f64);
+        let apart = (across * across + along * along).sqrt();
         assert!((apart - 6992.7).abs() < 8.0, "block {block}: {apart} at {x}, {y}");
     }
     for (found, wanted) in watch.bounds(2..=8).into_iter().zip([-20_941, 9941, -9941, 9941]) {
