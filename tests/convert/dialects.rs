@@ -71,7 +71,6 @@ const SAMPLES: [Sample; 9] = [
         without: |line| line.contains('='),
         passed_over: "G54,G60,G61",
         integers: true,
-        ..PLAIN
     },
     Sample {
         name: "mitsubishi",

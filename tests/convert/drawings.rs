@@ -113,20 +113,8 @@ fn tabs_are_left_by_the_first_pass_and_cut_last() {
             |[x, y]: [i64; 2]| (40_090..40_105).contains(&x) && (10_150..11_850).contains(&(y - up));
         // The way between start holes may cross the tab; only the cut of it runs along.
         let along = |cut: &Cut| cut.pulses.iter().filter(|place| is_in_tab(**place)).count();
-        assert!(
-            along(&before) < 100,
-            "{} µm of the tab are cut
-{}",
-            along(&before),
-            run.stdout
-        );
-        assert!(
-            along(&whole) > 1600,
-            "{} µm of the tab are cut
-{}",
-            along(&whole),
-            run.stdout
-        );
+        assert!(along(&before) < 100, "{} µm of the tab are cut\n{}", along(&before), run.stdout);
+        assert!(along(&whole) > 1600, "{} µm of the tab are cut\n{}", along(&whole), run.stdout);
         let [left, _, _, top] = whole.extents();
         let [_, right, _, _] = whole.extents_where(|[x, y]| x < 41_000 && y - up > 20_000);
         for (found, wanted) in [(left, -100), (right, 40_100), (top - up, 30_100)] {
