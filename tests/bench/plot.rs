@@ -71,7 +71,7 @@ fn lines(to: &PathBuf, count: usize) {
     let mut out = std::io::BufWriter::new(std::fs::File::create(to).unwrap());
     let node = |n: usize| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * (n % count) as f64 / count as f64);
-        let radius = if n % 2 == 0 { 400_000.0 } else { 399_900.0 };
+        let radius = if n.is_multiple_of(2) { 400_000.0 } else { 399_900.0 };
         ((radius * cos).round() as i64, (radius * sin).round() as i64)
     };
     for n in 0..count {

@@ -37,9 +37,9 @@ impl Bounds {
     pub(crate) fn of(points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let mut all = Self { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
         for point in points {
-            for axis in 0..2 {
-                all.min[axis] = all.min[axis].min(point[axis]);
-                all.max[axis] = all.max[axis].max(point[axis]);
+            for (axis, value) in point.into_iter().enumerate() {
+                all.min[axis] = all.min[axis].min(value);
+                all.max[axis] = all.max[axis].max(value);
             }
         }
         assert!(all.min[0].is_finite(), "no point at all");
