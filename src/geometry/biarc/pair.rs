@@ -90,13 +90,13 @@ impl Pieces {
         if most > tolerance {
             return most;
         }
-        let count = PLACES.max((2.0 * (to - from)) as usize);
+        let count = PLACES.max((3.0 * (to - from)) as usize);
         let mut last = [0.0, 0.0];
         for n in 1..=count {
             let share = |n: f64| n / count as f64;
             let next = if n < count { measure(share(n as f64)) } else { 0.0 };
             let is_top = last[1] > last[0] && last[1] >= next;
-            if is_top && peak(last, next) > 0.8 * tolerance {
+            if is_top && peak(last, next) > 0.7 * tolerance {
                 // A top that matters is measured again, closer by.
                 let mut near = [last[0], measure(share(n as f64 - 1.75))];
                 for (part, value) in
@@ -297,6 +297,6 @@ const SMOOTH: f64 = 5e-10;
 /// Centres and radii this close are one circle, mm.
 const SAME_CIRCLE: f64 = 1e-8;
 /// Places in which a piece is measured, at least.
-const PLACES: usize = 18;
+const PLACES: usize = 36;
 /// Tries for the crossing; it need not be met closely.
 const CROSSING_TRIES: usize = 4;
