@@ -122,7 +122,7 @@ impl CuttingPlan {
             }
             (None, None) => {
                 return Err(Failure::new(Exit::Usage, "how far the wire runs from the contours is not said")
-                    .help("say it with --offset MM (half the wire and the gap; 0 for none) or --passes"));
+                    .help("say it with --offset MM (half the wire and the gap) or --passes"));
             }
         };
         let lead_in =
