@@ -10,6 +10,7 @@
 //! stands at (x, -y); its classes are `nominal wire rapid cut lead-in start`. `docs/check.md` says what is drawn.
 
 use std::cell::RefCell;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -18,7 +19,6 @@ use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
-use super::output::Output;
 use super::registers::Registers;
 use super::{print, print_json};
 use crate::check::wire::{self, Seen};
@@ -113,9 +113,7 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     if is_standard_output(&options.output) {
         return print(&bytes);
     }
-    let mut output = Output::open(Some(&options.output))?;
-    output.write(&bytes)?;
-    output.finish()?;
+    write(&options.output, &bytes)?;
     if options.json {
         return print_json(&as_json(&plotted, blocks, bytes.len()));
     }
@@ -216,6 +214,12 @@ fn diameter(text: &str) -> Result<f64, String> {
 /// What a part's own offset takes away.
 fn kerf(motions: &Motions) -> Option<f64> {
     motions.part().map(|part| 2.0 * part.offset.abs())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let failed = |error| Failure::new(Exit::Ours, format!("cannot write {}: {error}", path.display()));
+    let mut file = std::fs::File::create(path).map_err(failed)?;
+    file.write_all(bytes).and_then(|()| file.flush()).map_err(failed)
 }
 
 fn as_json(plotted: &Plotted, blocks: u64, bytes: usize) -> serde_json::Value {
