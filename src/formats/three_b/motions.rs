@@ -167,12 +167,8 @@ impl<R: io::Read> Motions<R> {
     /// The next piece of an arc.
     fn piece(&mut self, mut round: Round) -> Motion {
         round.told += 1;
-        let piece_end = if round.told < round.pieces {
-            let j = Micrometres(round.block.j.0 * round.told / round.pieces);
-            self.model.displacement(&Block { j, ..round.block })
-        } else {
-            self.model.displacement(&round.block)
-        };
+        let j = Micrometres(round.block.j.0 * round.told / round.pieces);
+        let piece_end = self.model.displacement(&Block { j, ..round.block });
         let start = self.at;
         // A shorter count of a block that comes to its end comes to its end too.
         self.at = round.start + piece_end.unwrap_or_default();
@@ -250,3 +246,6 @@ fn millimetres(at: Position) -> Point {
 fn numbered(digits: &[u8]) -> Text {
     [b"N", digits].concat().into()
 }
+
+#[cfg(test)]
+mod tests;
