@@ -11,7 +11,7 @@ use crate::interpolator::{COORDINATE_MAX, Model};
 use crate::motion::Flag;
 use crate::units::Micrometres;
 
-/// The longest a block's own text may be, white space aside.
+/// The longest that a block's numbers may be with their B, white space aside.
 const BLOCK_BYTES_MAX: usize = 200;
 
 impl<R: io::Read> Reader<R> {
@@ -191,7 +191,7 @@ impl<R: io::Read> Reader<R> {
             }
             start = start.or(Some(self.at));
             value = value * 10 + i64::from(byte - b'0');
-            if value > largest || self.spelled.len() > BLOCK_BYTES_MAX {
+            if value > largest || self.spelled.len() >= BLOCK_BYTES_MAX {
                 let from = start.unwrap_or(self.at).min(self.at);
                 return Err(self.error(
                     from,
@@ -230,3 +230,6 @@ impl<R: io::Read> Reader<R> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

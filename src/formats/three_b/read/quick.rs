@@ -114,3 +114,6 @@ const COORDINATE_DIGITS: usize = 9;
 const COUNT_DIGITS: usize = 6;
 /// Enough for a block with every number and a blank or two between its words.
 const SQUEEZED_BYTES: usize = 96;
+
+#[cfg(test)]
+mod tests;
