@@ -490,6 +490,44 @@ mod tests {
     }
 
     #[test]
+    fn blocks_are_counted_and_nothing_is_said_behind_the_end() {
+        let motions = [
+            line(Travel::Cut, (0.0, 0.0), (1.0, 0.0)),
+            line(Travel::Cut, (1.0, 0.0), (1.0, 1.0)),
+            line(Travel::Cut, (1.0, 1.0), (0.0, 1.0)),
+            motion(Act::Stop(Stop::End)),
+            motion(Act::Stop(Stop::Pause)),
+            motion(Act::Stop(Stop::End)),
+        ];
+        let (text, mut writer) = write(Form::default(), &motions).unwrap();
+        assert_eq!((text.lines().count(), writer.blocks()), (4, 3), "{text}");
+        assert!(text.ends_with("L3\nDD\n"), "{text}");
+        writer.lose("ratio", Spot { byte: 9, line: 3, column: 1 });
+        assert_eq!(lost(&writer), [("stop after the end", 2), ("ratio", 1)]);
+    }
+
+    #[test]
+    fn a_header_is_written_as_it_stands_only_if_it_reads_back_whole() {
+        let header = |words: &str| motion(Act::Header(words.as_bytes().into()));
+        let form = Form { remarks: Remarks::Brackets, numbers: Numbers::AsRead, ..Form::default() };
+        for (words, written) in [
+            ("%", "%\n"),
+            ("*** one ***", "*** one ***\n"),
+            ("Start Point = 1", "Start Point = 1\n"),
+            ("% of what", "(% of what)\n"),
+            ("Start = 1 ; X", "Start = 1 ; X\n"),
+            ("N", "(N)\n"),
+            ("N7B", "(N7B)\n"),
+            ("(one)", ";(one)\n"),
+        ] {
+            assert_eq!(write(form, &[header(words)]).unwrap().0, format!("{written}DD\n"), "{words}");
+        }
+        // A number waits for a line it can stand before.
+        assert_eq!(write(form, &[header("N7")]).unwrap().0, "N   7: DD\n");
+        assert_eq!(write(form, &[header("n12345")]).unwrap().0, "N12345: DD\n");
+    }
+
+    #[test]
     fn an_arc_flatter_than_any_block_can_say_is_cut_as_its_chords() {
         let radius = 2e6;
         let half = 50.0f64;

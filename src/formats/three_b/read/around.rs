@@ -76,9 +76,7 @@ impl<R: io::Read> Reader<R> {
     /// Whether the B here opens a block: a number or another B comes after it.
     fn block_follows(&self) -> bool {
         let next = self.pieces.piece()[self.at + 1..].iter().find(|b| !b.is_ascii_whitespace());
-        next.is_none_or(|&b| {
-            b.is_ascii_digit() || b == b'B' || b == b'b' || b == b'-' || b == b'+' || b == b'.'
-        })
+        next.is_none_or(|b| matches!(b, b'0'..=b'9' | b'B' | b'b' | b'-' | b'+' | b'.'))
     }
 
     fn stop_word(&mut self) -> Option<&'static str> {
@@ -143,3 +141,6 @@ pub(in crate::formats) fn holds_block_pattern(words: &[u8]) -> bool {
     }
     false
 }
+
+#[cfg(test)]
+mod tests;

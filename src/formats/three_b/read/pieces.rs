@@ -180,3 +180,6 @@ fn end_of_last_block(piece: &[u8]) -> Option<usize> {
 
 /// Large enough that a long line and a good read fit.
 const BUFFER_BYTES: usize = 3 * LINE_BYTES_MAX;
+
+#[cfg(test)]
+mod tests;

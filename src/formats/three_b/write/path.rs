@@ -215,3 +215,6 @@ const RADIUS_MAX_MM: f64 = 99_999.0;
 const ARC_RADIUS_MAX_MM: f64 = 1e9;
 /// How far an arc may bow out from the chords that stand for it, mm.
 const BULGE_MM: f64 = 0.000_25;
+
+#[cfg(test)]
+mod tests;
