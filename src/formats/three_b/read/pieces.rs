@@ -73,7 +73,8 @@ impl<R: Read> Pieces<R> {
                 self.end = self.filled;
                 break;
             }
-            searched = self.from + kept;
+            // The piece stands at the front now.
+            searched = kept;
         }
         if self.byte == 0 {
             self.refuse_utf_16()?;
