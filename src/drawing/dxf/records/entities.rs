@@ -6,7 +6,7 @@ use crate::drawing::dxf::entity::{Figure, Holds, Kind, Uncut};
 use crate::formats::ReadError;
 use crate::place::Spot;
 
-use super::batch::{BATCH, Batch};
+use super::batch::{Batch, Slot};
 use super::sections::{DAMAGED, Reading};
 use super::{Entity, LAYER_0};
 
@@ -59,8 +59,8 @@ impl Reading<'_> {
                 self.skip()?;
                 continue;
             }
-            if self.batch.slots.len() >= BATCH {
-                self.flush()?;
+            if self.batch.is_full() {
+                self.hand_over()?;
             }
             match kind {
                 Some(kind) => {
@@ -186,7 +186,11 @@ impl Reading<'_> {
         if hidden.is_some() {
             self.batch.text.truncate(begin);
         } else {
-            self.batch.slots.push((self.records.entities.len(), kind, block.unwrap_or(0)));
+            self.batch.slots.push(Slot {
+                entity: self.records.entities.len(),
+                kind,
+                block: block.unwrap_or(0),
+            });
         }
         self.records.entities.push(Entity { figure, layer, line: spot.line, clockwise });
         Ok(hidden.is_none())

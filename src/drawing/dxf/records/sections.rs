@@ -5,7 +5,7 @@ use crate::drawing::dxf::write;
 use crate::formats::ReadError;
 
 use super::Records;
-use super::batch::Batch;
+use super::batch::{AtWork, Batch};
 
 /// A file as it is read.
 pub(super) struct Reading<'a> {
@@ -13,6 +13,7 @@ pub(super) struct Reading<'a> {
     pub(super) put_back: Option<Pair<'a>>,
     pub(super) records: Records,
     pub(super) batch: Batch,
+    pub(super) at_work: AtWork,
     pub(super) clockwise: bool,
     /// The lowest and highest Z of an entity.
     pub(super) heights: Option<[f64; 2]>,
@@ -23,7 +24,15 @@ pub(super) const DAMAGED: &str = "the drawing is damaged here: save it again fro
 impl<'a> Reading<'a> {
     pub(super) fn of(bytes: &'a [u8], records: Records) -> Result<Self, ReadError> {
         let pairs = Pairs::of(bytes)?;
-        Ok(Self { pairs, put_back: None, records, batch: Batch::default(), clockwise: false, heights: None })
+        Ok(Self {
+            pairs,
+            put_back: None,
+            records,
+            batch: Batch::default(),
+            at_work: AtWork::default(),
+            clockwise: false,
+            heights: None,
+        })
     }
 
     /// The next pair that is no remark.
