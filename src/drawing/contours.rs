@@ -149,9 +149,10 @@ pub(super) fn contours(
             Some(Contour { path, layer, closed, line, travel, depth: 0 })
         })
         .collect();
+    let areas: Vec<f64> = contours.iter().map(|c| if c.closed { c.path.area().abs() } else { 0.0 }).collect();
     if joining.order != Order::InSequence {
-        for contour in contours.iter().filter(|c| c.closed) {
-            if contour.path.area().abs() <= contour.path.length() * GAP_TOLD {
+        for (contour, area) in contours.iter().zip(&areas).filter(|(contour, _)| contour.closed) {
+            if *area <= contour.path.length() * GAP_TOLD {
                 let start = contour.path.start();
                 let message = format!("the contour from {} encloses nothing", named(start));
                 let help = "one way may be drawn twice in different pieces: delete one";
@@ -164,7 +165,7 @@ pub(super) fn contours(
             }
         }
     }
-    let parents = nesting::parents(&mut contours);
+    let parents = nesting::parents(&mut contours, &areas);
     match joining.order {
         Order::InSequence => contours,
         Order::AsDrawn | Order::HolesFirst => order::ordered(contours, &parents, joining, report),

@@ -16,7 +16,7 @@ use thiserror::Error;
 use super::curve::Curve;
 use super::{Element, Point};
 use pair::Pieces;
-use walk::{Stretch, Walk};
+use walk::{Node, Stretch, Walk};
 
 /// How a curve becomes elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,11 +158,7 @@ fn pieces(
     shape: Shape,
     count_max: usize,
 ) -> Result<Vec<Element>, FitError> {
-    // The deviation of a biarc grows with the third power of its length, that of a chord with the second.
-    let root = |ratio: f64| match shape {
-        Shape::Chord => ratio.sqrt(),
-        Shape::Biarc => libm::cbrt(ratio),
-    };
+    let search = Search { curve, stretch, fit, shape, end };
     let whole = stretch.length();
     let mut elements: Vec<Element> = Vec::new();
     let mut bridges = 0;
@@ -171,83 +167,9 @@ fn pieces(
     node.point = start;
     let mut step = whole.min(FIRST_STEP);
     while at < whole {
-        let mut good: Option<Good> = None;
-        let mut bad = whole;
-        let mut bad_seen = false;
-        let limit = fit.tolerance * MARGIN;
-        let ratio_of = |deviation: f64| fit.tolerance / deviation.max(fit.tolerance * 1e-6);
-        for attempt in 0..TRIES {
-            let mut to = (at + step).min(whole);
-            if whole - to < 1e-9 * whole {
-                to = whole;
-            }
-            let mut goal = stretch.node(curve, to);
-            if to >= whole {
-                goal.point = end;
-            }
-            let made = match shape {
-                Shape::Chord => Some(Pieces::chord(node.point, goal.point)),
-                Shape::Biarc if stretch.turning(at, to) > TURN_MAX => None,
-                Shape::Biarc => Pieces::biarc(curve, stretch, [at, to], [node, goal], fit.radius_max),
-            };
-            // A glance finds the length; what is taken is measured.
-            let measured = |pieces: &Pieces| pieces.deviation(curve, stretch, [at, to], fit.tolerance);
-            let long_enough = |deviation: f64| to >= whole || ratio_of(deviation) < GOOD_ENOUGH;
-            let mut is_measured = attempt >= GLANCES;
-            let mut deviation = match &made {
-                None => f64::INFINITY,
-                Some(pieces) if is_measured => measured(pieces),
-                Some(pieces) => pieces.glance(curve, stretch, [at, to]),
-            };
-            if let Some(pieces) = &made
-                && !is_measured
-                && deviation <= limit
-                && long_enough(deviation)
-            {
-                (deviation, is_measured) = (measured(pieces), true);
-            }
-            let ratio = ratio_of(deviation);
-            match made {
-                Some(pieces) if deviation <= limit => {
-                    good = Some(Good { to, pieces, is_measured });
-                    if is_measured && long_enough(deviation) {
-                        break;
-                    }
-                    step = (to - at) * (root(ratio) * 0.985).clamp(1.02, 8.0);
-                }
-                _ => {
-                    bad = bad.min(to);
-                    bad_seen = true;
-                    let guess = if ratio > 0.0 { root(ratio) * 0.97 } else { 0.0 };
-                    step = (to - at) * guess.clamp(0.2, 0.95);
-                }
-            }
-            if bad_seen {
-                // Between what was good and what was not.
-                let high = bad - at;
-                if let Some(found) = &mut good
-                    && high - (found.to - at) < 0.04 * high
-                {
-                    if found.is_kept(curve, stretch, at, fit.tolerance) {
-                        found.is_measured = true;
-                        break;
-                    }
-                    bad = found.to;
-                    good = None;
-                }
-                let high = bad - at;
-                let low = good.as_ref().map_or(0.0, |found| found.to - at);
-                if !(low < step && step < high) {
-                    step = 0.5 * (low + high);
-                }
-            }
-            if at + step <= at {
-                break;
-            }
-        }
-        let (to, made) = match good {
-            Some(found) if found.is_kept(curve, stretch, at, fit.tolerance) => (found.to, found.pieces),
-            _ => {
+        let (to, made) = match search.longest(at, node, step) {
+            Ok(found) => (found.to, found.pieces),
+            Err(step) => {
                 // Shorter than any step that could be told apart: a jump of the curve, bridged by a line.
                 bridges += 1;
                 if bridges > BRIDGES_MAX {
@@ -281,18 +203,134 @@ fn pieces(
     Ok(elements)
 }
 
-/// What fits so far, from where the last piece ended.
+/// The search for the longest piece that keeps the tolerance.
+struct Search<'a, C> {
+    curve: &'a C,
+    stretch: &'a Stretch,
+    fit: &'a Fit,
+    shape: Shape,
+    /// Where the stretch ends.
+    end: Point,
+}
+
+/// What fits so far.
 struct Good {
     to: f64,
     pieces: Pieces,
+    deviation: f64,
     is_measured: bool,
 }
 
-impl Good {
+impl<C: Curve> Search<'_, C> {
+    /// The longest piece from a place on, to within four hundredths; the length of the next try where none was found.
+    ///
+    /// A glance at a few places finds the length; what is taken is measured.
+    fn longest(&self, at: f64, node: Node, mut step: f64) -> Result<Good, f64> {
+        let whole = self.stretch.length();
+        let (tolerance, limit) = (self.fit.tolerance, self.fit.tolerance * MARGIN);
+        let mut good: Option<Good> = None;
+        // The shortest length that does not keep the tolerance, and by how much.
+        let mut bad: Option<(f64, f64)> = None;
+        // Tries in a row on one side of the length sought: below zero when they were too long.
+        let mut side = 0;
+        for attempt in 0..TRIES {
+            let mut to = (at + step).min(whole);
+            if whole - to < 1e-9 * whole {
+                to = whole;
+            }
+            let made = self.piece([at, to], node);
+            let mut deviation =
+                made.map_or(f64::INFINITY, |pieces| pieces.glance(self.curve, self.stretch, [at, to]));
+            let is_long = |deviation: f64| to >= whole || deviation * GOOD_ENOUGH > tolerance;
+            let mut is_measured = false;
+            if let Some(pieces) = &made
+                && deviation <= limit
+                && (is_long(deviation) || attempt >= GLANCES)
+            {
+                deviation = pieces.deviation(self.curve, self.stretch, [at, to], tolerance);
+                is_measured = true;
+            }
+            match made {
+                Some(pieces) if deviation <= limit => {
+                    good = Some(Good { to, pieces, deviation, is_measured });
+                    side = side.max(0) + 1;
+                    if is_measured && is_long(deviation) {
+                        break;
+                    }
+                }
+                _ => {
+                    if bad.is_none_or(|(length, _)| to - at < length) {
+                        bad = Some((to - at, deviation));
+                    }
+                    side = side.min(0) - 1;
+                }
+            }
+            if let (Some(found), Some((high, _))) = (&mut good, bad)
+                && high - (found.to - at) < NARROW * high
+            {
+                if self.is_kept(at, found) {
+                    found.is_measured = true;
+                    break;
+                }
+                bad = Some((found.to - at, found.deviation.max(tolerance)));
+                good = None;
+            }
+            step = self.next(good.as_ref().map(|found| (found.to - at, found.deviation)), bad, side);
+            if at + step <= at {
+                break;
+            }
+        }
+        match good {
+            Some(found) if self.is_kept(at, &found) => Ok(found),
+            _ => Err(step),
+        }
+    }
+
+    /// One piece, where there is one.
+    fn piece(&self, [at, to]: [f64; 2], node: Node) -> Option<Pieces> {
+        if self.shape == Shape::Biarc && self.stretch.turning(at, to) > TURN_MAX {
+            return None;
+        }
+        let mut goal = self.stretch.node(self.curve, to);
+        if to >= self.stretch.length() {
+            goal.point = self.end;
+        }
+        match self.shape {
+            Shape::Chord => Some(Pieces::chord(node.point, goal.point)),
+            Shape::Biarc => {
+                Pieces::biarc(self.curve, self.stretch, [at, to], [node, goal], self.fit.radius_max)
+            }
+        }
+    }
+
     /// Whether it keeps the tolerance, measured if it has only been glanced at.
-    fn is_kept(&self, curve: &impl Curve, stretch: &Stretch, at: f64, tolerance: f64) -> bool {
-        self.is_measured
-            || self.pieces.deviation(curve, stretch, [at, self.to], tolerance) <= tolerance * MARGIN
+    fn is_kept(&self, at: f64, found: &Good) -> bool {
+        let measured =
+            || found.pieces.deviation(self.curve, self.stretch, [at, found.to], self.fit.tolerance);
+        found.is_measured || measured() <= self.fit.tolerance * MARGIN
+    }
+
+    /// The length of the next try, from lengths that kept the tolerance and did not, and their deviations.
+    fn next(&self, good: Option<(f64, f64)>, bad: Option<(f64, f64)>, side: i32) -> f64 {
+        // The deviation of a biarc grows with the third power of its length, that of a chord with the second.
+        let root = |deviation: f64| match self.shape {
+            Shape::Chord => (deviation / self.fit.tolerance).sqrt(),
+            Shape::Biarc => libm::cbrt(deviation / self.fit.tolerance),
+        };
+        match (good, bad) {
+            (Some((low, less)), None) => low * (root(self.fit.tolerance * AIM) / root(less)).clamp(1.02, 8.0),
+            (None, Some((high, more))) => {
+                high * (root(self.fit.tolerance * AIM) / root(more)).clamp(0.2, 0.95)
+            }
+            (Some((low, less)), Some((high, more))) => {
+                let (below, above) = (root(less), root(more));
+                // So the roots lie on a line. Where that has misled twice, the middle is taken.
+                let share = (root(self.fit.tolerance * AIM) - below) / (above - below);
+                let share = if side.abs() < 3 && share > 0.0 { share.clamp(0.1, 0.9) } else { 0.5 };
+                low + (high - low) * share
+            }
+            (None, None) => self.stretch.length(),
+        }
     }
 }
 
@@ -309,6 +347,10 @@ const LINES_HOPELESS: f64 = 1.8;
 const MARGIN: f64 = 0.98;
 /// A piece with a tolerance no larger than this times its deviation is long enough: within four hundredths.
 const GOOD_ENOUGH: f64 = 1.12;
+/// The deviation that is tried for, in tolerances: in the middle of what is good enough.
+const AIM: f64 = 0.935;
+/// A length known to within this part of itself is not narrowed further.
+const NARROW: f64 = 0.04;
 /// The most that a piece turns, radians: each of its arcs less than half a circle.
 const TURN_MAX: f64 = 3.0;
 

@@ -13,6 +13,11 @@ pub trait Curve {
     /// The point at a value of the parameter, mm.
     fn point(&self, t: f64) -> Point;
 
+    /// The point to measure by, which may be off [`Self::point`] by a millionth of a micron and be found sooner.
+    fn sample(&self, t: f64) -> Point {
+        self.point(t)
+    }
+
     /// The direction of motion at a value of the parameter, of any length; zero where the point stands still.
     fn tangent(&self, t: f64) -> Vector;
 

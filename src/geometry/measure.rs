@@ -39,6 +39,26 @@ impl Element {
         }
     }
 
+    /// The point half way, by roots alone: [`Self::at`] a half to 1e-12 of the radius, and far sooner.
+    #[must_use]
+    pub fn middle(&self) -> Point {
+        match *self {
+            Self::Line { start, end } => start + (end - start) * 0.5,
+            Self::Arc { start, end, centre, sense } => {
+                let (first, last) = (start - centre, end - centre);
+                let (a, b) = (unit(first), unit(last));
+                let side = if sense == Sense::CounterClockwise { 1.0 } else { -1.0 };
+                // Between two near directions, or opposite to it; between far ones, square to the way between them.
+                let way = match a.dot(&b) > 0.0 {
+                    true if start != end && cross(a, b) * side > 0.0 => a + b,
+                    true => -(a + b),
+                    false => Vector::new(b.y - a.y, a.x - b.x) * side,
+                };
+                centre + unit(way) * (0.5 * (first.norm() + last.norm()))
+            }
+        }
+    }
+
     /// The direction of motion at the start, of length 1; zero for an element without length.
     #[must_use]
     pub fn heading_at_start(&self) -> Vector {
@@ -73,10 +93,10 @@ impl Element {
         let mut min = Point::new(start.x.min(end.x), start.y.min(end.y));
         let mut max = Point::new(start.x.max(end.x), start.y.max(end.y));
         if let Self::Arc { centre, sense, .. } = *self {
-            let radius = (start - centre).norm();
-            let whole = self.sweep();
+            let (first, last) = (start - centre, end - centre);
+            let radius = first.norm();
             for axis in AXES {
-                if super::sweep(start - centre, axis, sense) < whole {
+                if start == end || passes(first, last, axis, sense) {
                     let p = centre + axis * radius;
                     min = Point::new(min.x.min(p.x), min.y.min(p.y));
                     max = Point::new(max.x.max(p.x), max.y.max(p.y));
@@ -137,6 +157,17 @@ impl Element {
         }
     }
 
+    /// The same element moved.
+    #[must_use]
+    pub fn moved(self, by: Vector) -> Self {
+        match self {
+            Self::Line { start, end } => Self::Line { start: start + by, end: end + by },
+            Self::Arc { start, end, centre, sense } => {
+                Self::Arc { start: start + by, end: end + by, centre: centre + by, sense }
+            }
+        }
+    }
+
     /// The same element turned counter-clockwise by an angle in radians, made larger by `scale`, then moved.
     #[must_use]
     pub fn placed(self, turn: f64, scale: f64, by: Vector) -> Self {
@@ -156,6 +187,29 @@ impl Element {
 pub fn turn(from: Vector, to: Vector) -> f64 {
     let angle = libm::atan2(from.x * to.y - from.y * to.x, from.dot(&to));
     if angle <= -PI { PI } else { angle }
+}
+
+/// Whether an arc that is no whole circle passes through a direction between those of its ends.
+fn passes(first: Vector, last: Vector, through: Vector, sense: Sense) -> bool {
+    let (first, last) = match sense {
+        Sense::CounterClockwise => (first, last),
+        Sense::Clockwise => (last, first),
+    };
+    let is_between = |a: Vector, b: Vector| cross(a, through) > 0.0 && cross(through, b) > 0.0;
+    let is_along = |a: Vector| cross(a, through) == 0.0 && a.dot(&through) > 0.0;
+    let turned = cross(first, last);
+    if turned > 0.0 {
+        is_between(first, last)
+    } else if turned == 0.0 && first.dot(&last) < 0.0 {
+        cross(first, through) > 0.0
+    } else {
+        // What is left of the circle turns by less than a half.
+        !(is_between(last, first) || is_along(first) || is_along(last))
+    }
+}
+
+fn cross(a: Vector, b: Vector) -> f64 {
+    a.x * b.y - a.y * b.x
 }
 
 fn signed(turn: f64, sense: Sense) -> f64 {
@@ -223,6 +277,50 @@ mod tests {
         let nodes = [p(3.0, 6.0), p(5.0, 4.0), p(3.0, 2.0), p(1.0, 4.0)];
         let area: f64 = (0..4).map(|n| quarter(nodes[n], nodes[(n + 1) % 4]).doubled_area()).sum();
         assert!((area / 2.0 + 4.0 * PI).abs() < 1e-12);
+    }
+
+    /// Arcs of every sweep, either way, from every direction.
+    fn arcs() -> impl Iterator<Item = Element> {
+        let centre = Point::new(2.0, -1.0);
+        let at = move |degrees: i32| {
+            let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
+            centre + Vector::new(cos, sin) * 3.0
+        };
+        (0..360).step_by(7).flat_map(move |from| {
+            (1..=360).flat_map(move |sweep| {
+                let end = if sweep == 360 { at(from) } else { at(from + sweep) };
+                [Sense::CounterClockwise, Sense::Clockwise].map(|sense| Element::Arc {
+                    start: at(from),
+                    end,
+                    centre,
+                    sense,
+                })
+            })
+        })
+    }
+
+    #[test]
+    fn the_middle_is_the_point_at_a_half() {
+        for arc in arcs() {
+            assert!((arc.middle() - arc.at(0.5)).norm() < 1e-12, "{arc:?}");
+        }
+        let line = Element::Line { start: Point::new(1.0, 2.0), end: Point::new(4.0, -2.0) };
+        assert_eq!(line.middle(), line.at(0.5));
+    }
+
+    #[test]
+    fn an_arc_of_any_sweep_has_the_extent_of_its_points() {
+        for arc in arcs() {
+            let [mut min, mut max] = [arc.start(), arc.start()];
+            for n in 0..=720 {
+                let p = arc.at(f64::from(n) / 720.0);
+                min = Point::new(min.x.min(p.x), min.y.min(p.y));
+                max = Point::new(max.x.max(p.x), max.y.max(p.y));
+            }
+            let [low, high] = arc.extent();
+            // Points half a degree apart miss the outermost by less than this.
+            assert!((low - min).norm() < 5e-5 && (high - max).norm() < 5e-5, "{arc:?}");
+        }
     }
 
     #[test]

@@ -64,7 +64,7 @@ impl Path {
     pub fn area(&self) -> f64 {
         // Seen from its own start, so that a part far from the origin loses no digits.
         let by = -self.start().coords;
-        self.elements.iter().map(|e| e.placed(0.0, 1.0, by).doubled_area()).sum::<f64>() / 2.0
+        self.elements.iter().map(|e| e.moved(by).doubled_area()).sum::<f64>() / 2.0
     }
 
     /// The sense in which a closed path is run.

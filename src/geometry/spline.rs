@@ -12,6 +12,8 @@ use super::{Point, Vector};
 
 /// The highest degree that is evaluated; drawings use 1 to 5.
 pub const DEGREE_MAX: usize = 15;
+/// Powers lose as many digits as the weights differ by; beyond this de Boor's scheme is measured by instead.
+const POWERS_WEIGHTS: f64 = 100.0;
 
 /// A NURBS curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +23,20 @@ pub struct Spline {
     /// Control points times their weight, and the weight.
     controls: Vec<[f64; 3]>,
     seams: Vec<f64>,
+    /// One for each span with a length, of a curve that is measured by them; else none.
+    spans: Vec<Span>,
+}
+
+/// A span of degree 3 or less as powers of u, which goes from 0 to 1 in it.
+#[derive(Clone, Debug, PartialEq)]
+struct Span {
+    from: f64,
+    width: f64,
+    /// The first point, from which the others are seen: far from the origin no digit is lost.
+    origin: Point,
+    x: [f64; 4],
+    y: [f64; 4],
+    w: [f64; 4],
 }
 
 /// Why numbers are no spline.
@@ -116,28 +132,57 @@ impl Spline {
             let w = weight(n);
             [p.x * w, p.y * w, w]
         });
-        Ok(Self { degree, knots, controls: controls.collect(), seams })
+        let mut spline = Self { degree, knots, controls: controls.collect(), seams, spans: Vec::new() };
+        let [lightest, heaviest] =
+            weights.iter().fold([1.0_f64, 1.0], |[low, high], &w| [low.min(w), high.max(w)]);
+        if degree <= 3 && heaviest <= POWERS_WEIGHTS * lightest {
+            spline.spans = (degree..spline.controls.len()).filter_map(|span| spline.powers(span)).collect();
+        }
+        Ok(spline)
+    }
+
+    /// A span as powers, from its ends and the slopes there; none for one without a length.
+    fn powers(&self, span: usize) -> Option<Span> {
+        let [from, to] = [self.knots[span], self.knots[span + 1]];
+        let width = to - from;
+        if width <= 0.0 {
+            return None;
+        }
+        let [(start, leaves), (end, arrives)] = [from, to].map(|t| self.evaluate_in(span, t));
+        let origin = Point::new(start[0] / start[2], start[1] / start[2]);
+        let powers = |axis: usize, origin: f64| {
+            let seen = |p: [f64; 3]| p[axis] - origin * p[2];
+            let (a, b) = (seen(start), seen(end));
+            let (c, d) = (seen(leaves) * width, seen(arrives) * width);
+            [a, c, 3.0 * (b - a) - 2.0 * c - d, 2.0 * (a - b) + c + d]
+        };
+        Some(Span { from, width, origin, x: powers(0, origin.x), y: powers(1, origin.y), w: powers(2, 0.0) })
     }
 
     /// The homogeneous point and its derivative.
     fn evaluate(&self, t: f64) -> ([f64; 3], [f64; 3]) {
-        match self.degree {
-            2 => self.blended::<3>(t, 2),
-            3 => self.blended::<4>(t, 3),
-            degree => self.blended::<{ DEGREE_MAX + 1 }>(t, degree),
-        }
-    }
-
-    /// De Boor's algorithm in room for `N` points, one more than the degree `p` or more.
-    #[inline]
-    fn blended<const N: usize>(&self, t: f64, p: usize) -> ([f64; 3], [f64; 3]) {
-        let (first, last) = (p, self.controls.len() - 1);
+        let (first, last) = (self.degree, self.controls.len() - 1);
         let t = t.clamp(self.knots[first], self.knots[last + 1]);
         // The span that holds t; the last one with length also holds its end.
         let mut span = first + self.knots[first + 1..=last].partition_point(|&knot| knot <= t);
         while span > first && self.knots[span] >= self.knots[span + 1] {
             span -= 1;
         }
+        self.evaluate_in(span, t)
+    }
+
+    /// The same by the formula of one span.
+    fn evaluate_in(&self, span: usize, t: f64) -> ([f64; 3], [f64; 3]) {
+        match self.degree {
+            2 => self.blended::<3>(span, t, 2),
+            3 => self.blended::<4>(span, t, 3),
+            degree => self.blended::<{ DEGREE_MAX + 1 }>(span, t, degree),
+        }
+    }
+
+    /// De Boor's algorithm in room for `N` points, one more than the degree `p` or more.
+    #[inline]
+    fn blended<const N: usize>(&self, span: usize, t: f64, p: usize) -> ([f64; 3], [f64; 3]) {
         let mut d = [[0.0; 3]; N];
         d[..=p].copy_from_slice(&self.controls[span - p..=span]);
         let mut slope = [0.0; 3];
@@ -165,6 +210,15 @@ impl Curve for Spline {
     fn point(&self, t: f64) -> Point {
         let ([x, y, w], _) = self.evaluate(t);
         Point::new(x / w, y / w)
+    }
+
+    fn sample(&self, t: f64) -> Point {
+        let after = self.spans.partition_point(|span| span.from <= t);
+        let Some(span) = self.spans.get(after.max(1) - 1) else { return self.point(t) };
+        let u = (t - span.from) / span.width;
+        let sum = |c: &[f64; 4]| c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+        let over = 1.0 / sum(&span.w);
+        Point::new(span.origin.x + sum(&span.x) * over, span.origin.y + sum(&span.y) * over)
     }
 
     fn tangent(&self, t: f64) -> Vector {
@@ -232,6 +286,27 @@ mod tests {
             let expected = (a.coords + b.coords * 4.0 + c.coords) / 6.0;
             assert!((curve.point(t).coords - expected).norm() < 1e-14, "{t}");
             assert!((curve.tangent(t) - (c - a) / 2.0).norm() < 1e-14, "{t}");
+        }
+    }
+
+    #[test]
+    fn a_point_to_measure_by_is_the_point() {
+        let controls: Vec<Point> =
+            (0..9).map(|n| Point::new(4e5 + f64::from(n * n), f64::from(n * 7 % 5))).collect();
+        let weights: Vec<f64> = (0..9).map(|n| [1.0, 0.3, 7.0, 20.0][n % 4]).collect();
+        for degree in 1..=5 {
+            // A double knot, and ends that are not clamped.
+            let mut knots: Vec<f64> = (0..9 + degree + 1).map(|n| 0.7 * n as f64).collect();
+            knots[degree + 2] = knots[degree + 1];
+            for weights in [&weights[..], &[], &[5.0; 9]] {
+                let curve = Spline::new(degree, knots.clone(), &controls, weights).unwrap();
+                let [from, to] = curve.range();
+                for n in 0..=1000 {
+                    let t = from + (to - from) * f64::from(n) / 1000.0;
+                    let off = (curve.sample(t) - curve.point(t)).norm();
+                    assert!(off < 1e-9, "{off} at {t}, degree {degree}");
+                }
+            }
         }
     }
 

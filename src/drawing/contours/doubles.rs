@@ -21,14 +21,14 @@ pub(super) fn without(pieces: Vec<Piece>, report: &mut Vec<Finding>) -> Vec<Piec
     for n in by_size {
         let elements = &pieces[n].elements;
         middles.clear();
-        middles.extend(elements.iter().map(|e| e.at(0.5)));
+        middles.extend(elements.iter().map(Element::middle));
         let mut again: Option<usize> = None;
         let mut doubles = 0;
         for (element, &middle) in elements.iter().zip(&middles) {
             let same = grid.near(middle).find(|&k| is_same(&kept[k as usize].0, element));
             // A circle begins anywhere.
             let same = same.or_else(|| {
-                let opposite = is_circle(element).then(|| element.at(0.0))?;
+                let opposite = is_circle(element).then(|| element.start())?;
                 grid.near(opposite).find(|&k| is_same(&kept[k as usize].0, element))
             });
             if let Some(k) = same {
@@ -38,7 +38,7 @@ pub(super) fn without(pieces: Vec<Piece>, report: &mut Vec<Finding>) -> Vec<Piec
         }
         if let Some(first) = again {
             let piece = &pieces[n];
-            let at = elements[0].at(0.5);
+            let at = elements[0].middle();
             let (here, there) = (piece.line, pieces[first].line);
             if doubles == elements.len() {
                 double[n] = true;
@@ -86,5 +86,5 @@ fn is_same(a: &Element, b: &Element) -> bool {
     }
     let ends = (near(a.start(), b.start()) && near(a.end(), b.end()))
         || (near(a.start(), b.end()) && near(a.end(), b.start()));
-    ends && near(a.at(0.5), b.at(0.5))
+    ends && near(a.middle(), b.middle())
 }

@@ -13,7 +13,7 @@ pub(super) struct Nearest<T> {
     here: Vec<bool>,
 }
 
-impl<T: Copy + Ord> Nearest<T> {
+impl<T: Copy + Ord + Send> Nearest<T> {
     pub(super) fn of(mut points: Vec<(Point, T)>) -> Self {
         halve(&mut points, true);
         let count = points.len();
@@ -79,7 +79,7 @@ impl<T: Copy + Ord> Nearest<T> {
     }
 }
 
-fn halve<T: Copy + Ord>(points: &mut [(Point, T)], by_x: bool) {
+fn halve<T: Copy + Ord + Send>(points: &mut [(Point, T)], by_x: bool) {
     if points.len() < 2 {
         return;
     }
@@ -89,9 +89,19 @@ fn halve<T: Copy + Ord>(points: &mut [(Point, T)], by_x: bool) {
         a_key.total_cmp(&b_key).then(a.1.cmp(&b.1))
     });
     let (low, high) = points.split_at_mut(middle);
-    halve(low, !by_x);
-    halve(&mut high[1..], !by_x);
+    if middle > ALONE_MAX {
+        std::thread::scope(|scope| {
+            scope.spawn(|| halve(low, !by_x));
+            halve(&mut high[1..], !by_x);
+        });
+    } else {
+        halve(low, !by_x);
+        halve(&mut high[1..], !by_x);
+    }
 }
+
+/// More points than this are worth a thread.
+const ALONE_MAX: usize = 1 << 16;
 
 #[cfg(test)]
 mod tests {

@@ -6,10 +6,9 @@ use crate::geometry::Point;
 
 use super::Contour;
 
-/// The smallest closed contour that each lies in; every contour learns its depth.
-pub(super) fn parents(contours: &mut [Contour]) -> Vec<Option<usize>> {
+/// The smallest closed contour that each lies in, given what area each encloses; every contour learns its depth.
+pub(super) fn parents(contours: &mut [Contour], areas: &[f64]) -> Vec<Option<usize>> {
     let extents: Vec<[Point; 2]> = contours.iter().map(|c| c.path.extent()).collect();
-    let areas: Vec<f64> = contours.iter().map(|c| if c.closed { c.path.area().abs() } else { 0.0 }).collect();
     // A point on the way, between two nodes: nodes are where contours touch.
     let probes: Vec<Point> = contours.iter().map(|c| c.path.elements()[0].at(0.37)).collect();
     let mut by_left: Vec<usize> = (0..contours.len()).filter(|&n| contours[n].closed).collect();

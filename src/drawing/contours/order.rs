@@ -52,38 +52,46 @@ pub(super) fn ordered(
 }
 
 fn nearest_first(contours: Vec<Contour>, parents: &[Option<usize>], fixed: &[bool]) -> Vec<Contour> {
-    // Every node of a closed contour may be its start.
+    // Every node of a closed contour may be its start. They are numbered on from contour to contour.
     let mut nodes = Vec::new();
+    let mut owners = Vec::new();
+    let mut firsts = vec![0];
     for (n, contour) in contours.iter().enumerate() {
         let count = if contour.closed && !fixed[n] { contour.path.elements().len() } else { 1 };
-        nodes.extend(contour.path.elements()[..count].iter().enumerate().map(|(k, e)| (e.start(), (n, k))));
+        nodes.extend(
+            contour.path.elements()[..count].iter().zip(nodes.len() as u32..).map(|(e, k)| (e.start(), k)),
+        );
+        owners.resize(nodes.len(), n);
+        firsts.push(nodes.len());
     }
     let mut tree = Nearest::of(nodes);
-    let mut places: Vec<Vec<usize>> = vec![Vec::new(); contours.len()];
-    for (place, (n, _)) in tree.places() {
-        places[n].push(place);
+    let mut places = vec![0; owners.len()];
+    for (place, node) in tree.places() {
+        places[node as usize] = place;
     }
+    let places = |n: usize| &places[firsts[n]..firsts[n + 1]];
     let mut inside = vec![0usize; contours.len()];
     for parent in parents.iter().flatten() {
         inside[*parent] += 1;
     }
     for n in (0..contours.len()).filter(|&n| inside[n] == 0) {
-        places[n].iter().for_each(|&place| tree.set(place, true));
+        places(n).iter().for_each(|&place| tree.set(place, true));
     }
     let mut left: Vec<Option<Contour>> = contours.into_iter().map(Some).collect();
     let mut ordered = Vec::with_capacity(left.len());
     let mut at = Point::origin();
-    while let Some((n, node)) = tree.find(at) {
-        places[n].iter().for_each(|&place| tree.set(place, false));
+    while let Some(node) = tree.find(at) {
+        let n = owners[node as usize];
+        places(n).iter().for_each(|&place| tree.set(place, false));
         if let Some(mut contour) = left[n].take() {
-            contour.path = contour.path.begun_at(node);
+            contour.path = contour.path.begun_at(node as usize - firsts[n]);
             at = contour.path.end();
             ordered.push(contour);
         }
         if let Some(parent) = parents[n] {
             inside[parent] -= 1;
             if inside[parent] == 0 {
-                places[parent].iter().for_each(|&place| tree.set(place, true));
+                places(parent).iter().for_each(|&place| tree.set(place, true));
             }
         }
     }

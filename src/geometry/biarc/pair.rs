@@ -60,7 +60,7 @@ impl Pieces {
     pub(super) fn glance(&self, curve: &impl Curve, stretch: &Stretch, [from, to]: [f64; 2]) -> f64 {
         let probes = self.probes();
         let measure = |eighths: f64| {
-            probes.distance(curve.point(stretch.parameter(from + (to - from) * eighths / 8.0)))
+            probes.distance(curve.sample(stretch.parameter(from + (to - from) * eighths / 8.0)))
         };
         // The tops of an arc's and of a biarc's deviation lie a twentieth above these places.
         1.06 * [1.0, 3.0, 5.0, 7.0].map(measure).into_iter().fold(0.0, f64::max)
@@ -81,15 +81,8 @@ impl Pieces {
     ) -> f64 {
         let probes = self.probes();
         let measure =
-            |share: f64| probes.distance(curve.point(stretch.parameter(from + (to - from) * share)));
+            |share: f64| probes.distance(curve.sample(stretch.parameter(from + (to - from) * share)));
         let mut most = 0.0_f64;
-        // A few places first: most tries that fail, fail there.
-        for n in [1, 3, 5, 7] {
-            most = most.max(measure(f64::from(n) / 8.0));
-        }
-        if most > tolerance {
-            return most;
-        }
         let count = PLACES.max((3.0 * (to - from)) as usize);
         let mut last = [0.0, 0.0];
         for n in 1..=count {
@@ -163,7 +156,7 @@ fn meeting(
     for _ in 0..CROSSING_TRIES {
         let share = (low.1 / (low.1 - high.1)).clamp(0.1, 0.9);
         let at = low.0 + (high.0 - low.0) * share;
-        let q = curve.point(stretch.parameter(at));
+        let q = curve.sample(stretch.parameter(at));
         let value = side(q - p, s - q);
         crossing = Some(q);
         if value.abs() < 0.02 * (low.1.abs() + high.1.abs()) {
@@ -223,42 +216,58 @@ struct Probe {
 }
 
 enum Kind {
-    Line { way: Vector, length2: f64 },
-    Arc { centre: Point, radius: f64, sign: f64 },
+    Line {
+        /// Along it, of length 1.
+        along: Vector,
+        length: f64,
+    },
+    Arc {
+        centre: Point,
+        radius: f64,
+        /// From the centre to both ends.
+        arms: [Vector; 2],
+        /// 1 counter-clockwise, −1 clockwise.
+        sign: f64,
+    },
 }
 
 impl Probe {
     fn of(element: &Element) -> Self {
         let (start, end) = (element.start(), element.end());
         let kind = match *element {
-            Element::Line { .. } => Kind::Line { way: end - start, length2: (end - start).norm_squared() },
+            Element::Line { .. } => {
+                let way = end - start;
+                let length = way.norm();
+                // Without a length it has no side: nothing lies beside it.
+                if length > 0.0 {
+                    Kind::Line { along: way / length, length }
+                } else {
+                    Kind::Line { along: way, length: -1.0 }
+                }
+            }
             Element::Arc { centre, sense, .. } => {
                 let sign = if sense == Sense::CounterClockwise { 1.0 } else { -1.0 };
-                Kind::Arc { centre, radius: (start - centre).norm(), sign }
+                let arms = [start - centre, end - centre];
+                Kind::Arc { centre, radius: arms[0].norm(), arms, sign }
             }
         };
         Self { start, end, kind }
     }
 
     /// The distance of a point beside the element; none for one before its start or behind its end.
+    #[inline]
     fn beside(&self, p: Point) -> Option<f64> {
-        match self.kind {
-            Kind::Line { way, length2 } => {
-                let seen = p - self.start;
-                let along = seen.dot(&way);
-                let beside = length2 > 0.0 && 0.0 <= along && along <= length2;
-                beside.then(|| cross(way, seen).abs() / length2.sqrt())
+        let off = p - self.start;
+        match &self.kind {
+            Kind::Line { along, length } => {
+                let at = off.dot(along);
+                (0.0 <= at && at <= *length).then(|| cross(*along, off).abs())
             }
-            Kind::Arc { centre, radius, sign } => {
+            Kind::Arc { centre, radius, arms: [first, last], sign } => {
                 let seen = p - centre;
-                let after = cross(self.start - centre, seen) * sign >= 0.0;
-                let before = cross(seen, self.end - centre) * sign >= 0.0;
-                (after && before).then(|| {
-                    // Free of cancellation where the radius is large.
-                    let off = p - self.start;
-                    let square = off.norm_squared() + 2.0 * off.dot(&(self.start - centre));
-                    square.abs() / (seen.norm() + radius)
-                })
+                let is_beside = cross(*first, seen) * sign >= 0.0 && cross(seen, *last) * sign >= 0.0;
+                // The difference of the squares, free of cancellation where the radius is large.
+                is_beside.then(|| off.dot(&(seen + first)).abs() / (seen.norm() + radius))
             }
         }
     }
@@ -275,16 +284,20 @@ struct Probes {
 }
 
 impl Probes {
+    /// The distance of a point from the elements.
+    ///
+    /// A point beside the first is not measured against the second: an arc that turns less than half a circle never comes
+    /// back over the line on which it was met, so of what is near the second only that about the meeting lies beside both.
+    #[inline]
     fn distance(&self, p: Point) -> f64 {
-        let second = self.second.as_ref();
-        match (self.first.beside(p), second.and_then(|second| second.beside(p))) {
-            (Some(one), Some(other)) => one.min(other),
-            (Some(one), None) | (None, Some(one)) => one,
-            (None, None) => {
-                let first = self.first.to_nearest_end(p);
-                second.map_or(first, |second| first.min(second.to_nearest_end(p)))
-            }
+        if let Some(distance) = self.first.beside(p) {
+            return distance;
         }
+        if let Some(distance) = self.second.as_ref().and_then(|second| second.beside(p)) {
+            return distance;
+        }
+        let first = self.first.to_nearest_end(p);
+        self.second.as_ref().map_or(first, |second| first.min(second.to_nearest_end(p)))
     }
 }
 

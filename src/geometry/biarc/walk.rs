@@ -122,10 +122,10 @@ impl Stretch {
 
     /// About how many lines it takes within a tolerance: one whose curve bows out by κ·s²/8 is s long.
     pub(super) fn lines_within(&self, curve: &impl Curve, tolerance: f64) -> f64 {
-        let mut last = curve.point(self.t[0]);
+        let mut last = curve.sample(self.t[0]);
         let mut count = 0.0;
         for (t, turned) in self.t.windows(2).zip(self.turned.windows(2)) {
-            let next = curve.point(t[1]);
+            let next = curve.sample(t[1]);
             count += ((turned[1] - turned[0]) * (next - last).norm() / (8.0 * tolerance)).sqrt();
             last = next;
         }
