@@ -5,6 +5,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+#[path = "convert/arcs.rs"]
+mod arcs;
 #[path = "convert/backwards.rs"]
 mod backwards;
 #[path = "convert/control.rs"]

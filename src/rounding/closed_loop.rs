@@ -90,6 +90,9 @@ struct Choice {
 const LIMIT_UM: f64 = 1.045;
 /// The same when every model has to agree, µm.
 const LIMIT_ANY_UM: f64 = 1.4;
+/// A node so near to a whole micron is one, µm: a hundredth of a nanometre, which is more than reckoning a drawing's arc
+/// from its angles is out by, and less than any drawing hits by chance.
+const WHOLE_UM: f64 = 1e-5;
 
 impl Chooser {
     /// Chooses blocks for a control of the kind aimed at, with the wire standing at `origin`.
@@ -98,7 +101,7 @@ impl Chooser {
         Self { stand: Stand { aim, at: origin }, pieces: VecDeque::new(), home: None, exact_nodes: false }
     }
 
-    /// The same chooser; where a node is a whole micron to the last bit, as another 3B program's are, no other will do
+    /// The same chooser; where a node is a whole micron, as another 3B program's are, no other will do
     /// on a control of one model. That may take a second block. With every model aimed at, it is tried first.
     #[must_use]
     pub fn with_exact_nodes(mut self) -> Self {
@@ -211,8 +214,7 @@ impl Goal {
     /// A node that may be a whole micron, and is then meant.
     fn node(point: Point, aim: Aim) -> Self {
         let near = Self::near(point);
-        let (x, y) = (near.at.x.millimetres(), near.at.y.millimetres());
-        if (x, y) != (point.x, point.y) {
+        if near.at.distance_um(point) > WHOLE_UM {
             return near;
         }
         Self { exactly: matches!(aim, Aim::One(_)), theory_first: true, ..Self::home(near.at) }

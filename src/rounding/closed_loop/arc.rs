@@ -12,6 +12,8 @@ use crate::units::{Micrometres, Position};
 pub(super) struct Shape {
     start_um: Point,
     centre_um: Point,
+    /// As at the start.
+    radius_um: f64,
     sense: Sense,
     /// The sweep in quarter turns, to the middle of its quarter: 0.5, 1.5, 2.5, 3.5, or 4 for the full circle.
     quarters: f64,
@@ -20,7 +22,16 @@ pub(super) struct Shape {
 impl Shape {
     pub(super) fn new(start: Point, end: Point, centre: Point, sense: Sense) -> Self {
         let quarters = quarter_turns(start - centre, end - centre, sense);
-        Self { start_um: start * 1000.0, centre_um: centre * 1000.0, sense, quarters }
+        let radius_um = (start - centre).norm() * 1000.0;
+        Self { start_um: start * 1000.0, centre_um: centre * 1000.0, radius_um, sense, quarters }
+    }
+
+    /// How far a circle strays from this one at most, anywhere round it, when it is begun at a point of the lattice seen
+    /// from its centre, µm.
+    fn stray(&self, stand: Stand, first: Position) -> f64 {
+        let vector = |p: Position| Vector::new(p.x.0 as f64, p.y.0 as f64);
+        let (first, from_centre) = (vector(first), vector(stand.at) - self.centre_um.coords);
+        (first.norm() - self.radius_um).abs() + (first - from_centre).norm()
     }
 }
 
@@ -90,6 +101,10 @@ fn consider(
     let end = stand.at + moved;
     let error = goal.error(end);
     if best.is_some_and(|b| b.error <= error) {
+        return;
+    }
+    // Up to half a turn the ends hold the rest of the way; beyond, they can be right and the far side is not.
+    if shape.quarters > 2.0 && shape.stray(stand, first) > STRAY_UM {
         return;
     }
     let agree = |bend| branch.travel(bend, g, count) == Ok(moved);
@@ -214,6 +229,10 @@ const AT_ONCE_UM: f64 = 0.75;
 
 /// Near enough not to look further out, µm.
 const GOOD_UM: f64 = 0.95;
+
+/// How far the circle of an arc of more than half a turn may stray, µm; one that cannot be cut so is split. The pulses lie
+/// up to a micron beside their circle, so the wire keeps within 2.5 µm.
+const STRAY_UM: f64 = 1.5;
 
 /// A bulge the lattice cannot show, µm.
 const BULGE_UM: f64 = 0.5;

@@ -232,7 +232,11 @@ fn rounded(
     Ok(Rounded { mode, start, end, centre: Some(centre) })
 }
 
-/// The whole microns near a centre from which both ends are equally far, as nearly as can be; and the difference, um.
+/// The whole microns to be called the centre of an arc; and by how much the radii at its two ends differ then, um.
+///
+/// It is the nearest to the true centre, unless the radii would differ by more than a control is sure to pass over: then
+/// it is moved by up to a micron, where that makes them agree by more than it shifts the arc. A centre is not moved for the
+/// sake of agreement alone: the far side of an arc over three quadrants strays by more than twice of what it is moved.
 fn best_centre(start: Position, end: Position, centre: Point) -> (Position, f64) {
     let nearest = Position::nearest(centre);
     let mut best = (nearest, f64::INFINITY, f64::INFINITY);
@@ -240,14 +244,22 @@ fn best_centre(start: Position, end: Position, centre: Point) -> (Position, f64)
         for dy in -1..=1 {
             let candidate = nearest + Position::new(dx, dy);
             let difference = (distance(candidate, start) - distance(candidate, end)).abs();
-            let off = candidate.distance_um(centre);
-            if (difference, off) < (best.1, best.2) {
-                best = (candidate, difference, off);
+            let cost =
+                DISAGREEMENT_COST * (difference - AGREEMENT_UM).max(0.0) + candidate.distance_um(centre);
+            if cost < best.2 {
+                best = (candidate, difference, cost);
             }
         }
     }
     (best.0, best.1)
 }
+
+/// Radii that differ by no more agree on any control: it is the least increment, and what a 3B arc's pulses may lie beside
+/// its circle. LinuxCNC refuses small arcs from 1.27 um (`CENTER_ARC_RADIUS_TOLERANCE_MM`).
+const AGREEMENT_UM: f64 = 1.0;
+
+/// What a micron of disagreement beyond that is worth in microns of the centre: a refused block is worse than a wide arc.
+const DISAGREEMENT_COST: f64 = 2.0;
 
 fn distance(a: Position, b: Position) -> f64 {
     let (x, y) = ((a.x.0 - b.x.0) as f64, (a.y.0 - b.y.0) as f64);
