@@ -1,5 +1,7 @@
 //! The command line of `mock-controller`: words in, a job out. Nothing is opened here.
 
+mod talk;
+
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,6 +11,9 @@ use mock_controller::{
     ArcCentre, Dialect as Written, FaultKind, Framing, GcodeSettings, IgnoredWords, LabelSkip, Model, Pace,
     Register, Settings, Start, Taper, Torn, UnitWithoutPoint, Until,
 };
+
+pub(crate) use talk::CodeWord;
+use talk::Talk;
 
 /// A wire-EDM control to feed: receives 3B, 4B or G-code over a paced line, cuts it pulse by pulse, reports where it stood.
 ///
@@ -24,9 +29,8 @@ pub(crate) struct Words {
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
 
-    /// How the control and its sender talk.
-    #[arg(long, value_enum, default_value = "dc-codes")]
-    protocol: Protocol,
+    #[command(flatten)]
+    talk: Talk,
 
     /// Bits a second of the line [default: 9600].
     #[arg(long, value_name = "N", conflicts_with = "unpaced", value_parser = clap::value_parser!(u32).range(1..))]
@@ -132,8 +136,9 @@ pub(crate) struct Words {
     #[arg(long, value_name = "N")]
     reset_at_block: Option<u64>,
 
-    /// A fault and its probability, 0 to 1: per character (flip drop double insert parity echo disconnect), per DC1
-    /// (xon-lost xon-late xon-double), per DC3 (xoff-lost), per block (stall slow reset alarm nak-storm). May be repeated.
+    /// A fault and its probability, 0 to 1: per character (flip drop double insert parity echo disconnect dsr-drop), per DC1
+    /// or other answer
+    /// (xon-lost xon-late xon-double), per DC3 or NAK (xoff-lost), per block (stall slow reset alarm nak-storm). May be repeated.
     #[arg(long = "fault", value_name = "KIND=RATE", value_parser = fault)]
     faults: Vec<(FaultKind, f64)>,
 
@@ -180,12 +185,6 @@ struct Place {
     /// A serial device.
     #[arg(long, value_name = "DEVICE")]
     port: Option<String>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Protocol {
-    /// DC1 to start and go on, DC3 to hold, NAK and SYN to stop.
-    DcCodes,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -239,6 +238,7 @@ enum LabelSkipWord {
 pub(crate) struct Job {
     pub(crate) place: At,
     pub(crate) settings: Settings,
+    pub(crate) code: CodeWord,
     pub(crate) baud: u32,
     pub(crate) framing: Framing,
     pub(crate) report: Option<PathBuf>,
@@ -265,7 +265,6 @@ impl Words {
             (None, None, Some(device)) => At::Serial(device),
             (None, None, None) => return Err(wrong("one of --pty, --tcp and --port is needed")),
         };
-        let Protocol::DcCodes = self.protocol;
         let baud = self.baud.unwrap_or(9600);
         let pace = if self.unpaced { Pace::Unpaced } else { Pace::Paced { baud, framing: self.framing } };
         let mut faults = BTreeMap::new();
@@ -285,6 +284,9 @@ impl Words {
         }
         let settings = Settings {
             pace,
+            protocol: self.talk.protocol().map_err(|error| wrong(&error))?,
+            tv_check: self.talk.checks_tv(),
+            handshake: self.talk.handshake(&place),
             dialect: match self.dialect {
                 Dialect::ThreeB => Written::ThreeB,
                 Dialect::FourB => Written::FourB,
@@ -344,6 +346,7 @@ impl Words {
         Ok(Job {
             place,
             settings,
+            code: self.talk.code(),
             baud,
             framing: self.framing,
             report: self.report,

@@ -7,19 +7,25 @@
 //!   program's end received, no hold, line silent ─▶ DC3 (end of transfer); a next program may follow
 //! ```
 //!
+//! That is the control that speaks DC codes. Where another protocol is spoken, its machine (`protocol`) says what is
+//! said, and the control tells it when it is started, holds, goes on and stops (`talk`).
+//!
 //! Sans-IO: time is an argument and only moves by [`Controller::advance`]. The same calls at the same times give the
 //! same results, always.
 //!
 //! Sources: domain/4, "The rules that cost parts when broken", and the contract of the command line.
 
+mod code;
 mod cutter;
 mod flow;
 mod input;
 mod lines;
 mod plan;
+mod protocol;
 pub(crate) mod reader;
 pub mod settings;
 mod source;
+mod talk;
 mod text;
 
 use std::collections::VecDeque;
@@ -31,12 +37,16 @@ use crate::line::forward::{Forward, Mark};
 use crate::line::utilisation::Utilisation;
 use crate::observer::{BlockEnd, Observer, Unobserved};
 use crate::report::Report;
+use code::Decoder;
+pub use code::{Code, CodeTable, NotACode};
 use cutter::{Cut, Item, Queued};
 use flow::Flow;
 use plan::Plan;
 pub use plan::gcode::{
     ArcCentre, GcodeSettings, IgnoredWords, NotARegister, NotAWord, Register, UnitWithoutPoint,
 };
+use protocol::Machine;
+pub use protocol::{AnswerBytes, EndCode, Lines, Next, Protocol, TapePacing, UnknownProtocol};
 use settings::{Settings, SettingsError};
 use source::Source;
 use text::Text;
@@ -52,6 +62,9 @@ pub struct Controller<O: Observer = Unobserved> {
     now: Duration,
     forward: Forward,
     back: Back,
+    /// What speaks for the control, where it is not by DC codes.
+    talk: Option<Box<dyn Machine>>,
+    decoder: Decoder,
     reader: Source,
     text: Text,
     faults: Faults,
@@ -107,10 +120,12 @@ impl<O: Observer> Controller<O> {
     /// [`SettingsError`] when the settings contradict each other.
     pub fn observed(settings: Settings, observer: O) -> Result<Self, SettingsError> {
         settings.validate()?;
-        Ok(Controller {
+        let mut control = Controller {
             now: Duration::ZERO,
             forward: Forward::new(settings.pace, settings.fifo_bytes),
             back: Back::new(settings.pace, settings.latency),
+            talk: Protocol::machine(&settings),
+            decoder: Decoder::new(settings.code.clone(), settings.tv_check),
             reader: Source::new(settings.dialect, settings.label_skip),
             text: Text::default(),
             faults: Faults::new(&settings.faults, settings.seed),
@@ -123,7 +138,9 @@ impl<O: Observer> Controller<O> {
             tally: Tally::default(),
             observer,
             settings,
-        })
+        };
+        control.gate();
+        Ok(control)
     }
 
     /// A sender is there.
@@ -243,7 +260,8 @@ impl<O: Observer> Controller<O> {
     #[must_use]
     pub fn is_finished(&self) -> bool {
         let said = self.back.is_idle() && self.back.arrival().is_none();
-        let cut = self.tally.programs > 0 && self.cut.is_none() && self.queue.is_empty();
+        let idle = self.cut.is_none() && self.queue.is_empty() && !self.in_transfer();
+        let cut = self.tally.programs > 0 && idle;
         said && (self.tally.alarm.is_some() || (cut && self.flow.end_said))
     }
 
@@ -303,6 +321,8 @@ impl<O: Observer> Controller<O> {
         consider(self.cut.as_ref().map(|cut| cut.ends), Event::CutEnds);
         consider(self.back.completion(), Event::Sent);
         consider(self.flow.go_at, Event::Go);
+        consider(self.machine_due(), Event::Machine);
+        consider(self.flow.line_on_at, Event::LineOn);
         consider(self.end_of_transfer_due(), Event::EndOfTransfer);
         consider(self.forward.mark_is_due().then_some(self.now), Event::Mark);
         next
@@ -316,7 +336,10 @@ impl<O: Observer> Controller<O> {
             Event::Go => self.go(),
             Event::EndOfTransfer => self.end_of_transfer(),
             Event::Mark => self.link_changes(),
+            Event::Machine => self.machine_time(),
+            Event::LineOn => self.line_on(),
         }
+        self.gate();
     }
 
     /// Takes up what a block has done.
@@ -340,6 +363,8 @@ enum Event {
     CutEnds,
     Sent,
     Go,
+    Machine,
+    LineOn,
     EndOfTransfer,
     Mark,
 }

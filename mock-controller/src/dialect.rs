@@ -59,6 +59,11 @@ impl Assembly {
         }
     }
 
+    /// Whether a block number stands there and nothing else.
+    pub(crate) fn is_number_alone(&self) -> bool {
+        self.is_partial() && !self.is_begun()
+    }
+
     /// Takes one character; a 3B block comes out as a 4B block without marks.
     pub(crate) fn push(&mut self, byte: u8) -> four_b::Step {
         match self {

@@ -18,8 +18,7 @@
 //! Everything above is sans-IO: time is a [`std::time::Duration`] since an origin of the caller's choice and only moves by
 //! [`Controller::advance`]. [`shell`] alone has a clock, a pseudo-terminal, a socket or a serial device.
 //!
-//! What it deliberately does not do: other dialects than 3B, 4B and plain G-code (no macros), other protocols
-//! than the DC codes. Of a taper in G-code (G50 G51 G52) only the plane of the program is cut, and the words are counted.
+//! What it deliberately does not do: other dialects than 3B, 4B and plain G-code (no macros). Of a taper in G-code (G50 G51 G52) only the plane of the program is cut, and the words are counted.
 #![warn(missing_docs)]
 
 pub mod control;
@@ -33,7 +32,10 @@ pub mod report;
 pub mod shell;
 
 pub use control::Controller;
-pub use control::settings::{LabelSkip, Settings, SettingsError, Start, Taper, Torn, Until};
+pub use control::settings::{Handshake, LabelSkip, Settings, SettingsError, Start, Taper, Torn, Until};
+pub use control::{
+    AnswerBytes, Code, CodeTable, EndCode, Lines, Next, NotACode, Protocol, TapePacing, UnknownProtocol,
+};
 pub use control::{
     ArcCentre, GcodeSettings, IgnoredWords, NotARegister, NotAWord, Register, UnitWithoutPoint,
 };

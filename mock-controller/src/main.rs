@@ -14,13 +14,13 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::{CommandFactory as _, Parser as _};
-use mock_controller::Controller;
 use mock_controller::shell::files::{Files, write_report};
 use mock_controller::shell::serial::SerialLink;
 use mock_controller::shell::tcp::TcpLink;
 use mock_controller::shell::{Link, serve};
+use mock_controller::{Code, CodeTable, Controller, Settings};
 
-use cli::{At, Job, Words};
+use cli::{At, CodeWord, Job, Words};
 
 fn main() -> ExitCode {
     let words = match all_words() {
@@ -42,7 +42,7 @@ fn main() -> ExitCode {
         }
         Err(error) => {
             eprintln!("mock-controller: error: {error}");
-            ExitCode::from(1)
+            ExitCode::from(if error.kind() == io::ErrorKind::InvalidData { 2 } else { 1 })
         }
     }
 }
@@ -76,7 +76,8 @@ fn run(job: &Job) -> io::Result<Outcome> {
     }
     let files = Files::create(job.trace.as_deref(), job.save.as_deref(), job.picture.as_deref())?;
     let files = if job.settings.taper.is_some() { files.with_upper() } else { files };
-    let mut control = Controller::observed(job.settings.clone(), files).map_err(io::Error::other)?;
+    let settings = Settings { code: code(&job.code)?, ..job.settings.clone() };
+    let mut control = Controller::observed(settings, files).map_err(io::Error::other)?;
     let (mut link, ready) = open(job)?;
     writeln!(io::stdout(), "ready {ready}")?;
     io::stdout().flush()?;
@@ -97,6 +98,19 @@ fn run(job: &Job) -> io::Result<Outcome> {
         }
         _ => Outcome::Done,
     })
+}
+
+/// The character code; a table is read from its file.
+fn code(word: &CodeWord) -> io::Result<Code> {
+    let file = match word {
+        CodeWord::Known(code) => return Ok(code.clone()),
+        CodeWord::File(file) => file,
+    };
+    let told =
+        |kind, error: &dyn std::fmt::Display| io::Error::new(kind, format!("{}: {error}", file.display()));
+    let text = std::fs::read_to_string(file).map_err(|error| told(error.kind(), &error))?;
+    let table = CodeTable::parse(&text).map_err(|error| told(io::ErrorKind::InvalidData, &error))?;
+    Ok(Code::Table(table))
 }
 
 fn open(job: &Job) -> io::Result<(Box<dyn Link>, String)> {

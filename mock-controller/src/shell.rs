@@ -15,8 +15,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::control::Controller;
 use crate::control::settings::{Settings, Until};
+use crate::control::{Controller, Lines};
 use crate::observer::Observer;
 use crate::report::Report;
 
@@ -35,6 +35,15 @@ pub trait Link {
     ///
     /// As [`Link::wait`].
     fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
+
+    /// Sets the control's lines, where there are any, and tells whether the sender's DTR is on, where that can be seen.
+    ///
+    /// # Errors
+    ///
+    /// As [`Link::wait`].
+    fn lines(&mut self, _lines: Lines) -> io::Result<Option<bool>> {
+        Ok(None)
+    }
 
     /// Pulls the cable: the sender sees its port gone. The link can be opened again afterwards.
     ///
@@ -84,6 +93,9 @@ pub fn serve<O: Observer>(
         if control.take_disconnected() {
             is_open = false;
             link.pull()?;
+        }
+        if let Some(ready) = link.lines(control.lines())? {
+            control.sender_ready(ready, now);
         }
         if now >= next_tick {
             next_tick = now + TICK;

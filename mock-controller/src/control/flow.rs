@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use super::Controller;
 use super::plan::Plan;
+use super::protocol::Stop;
 use super::settings::Start;
 use crate::line::back::{Meaning, Outgoing};
 use crate::line::fault::FaultKind;
@@ -31,6 +32,14 @@ pub(super) struct Flow {
     pub(super) last_go: Duration,
     /// The DC3 after the program's end has been sent.
     pub(super) end_said: bool,
+    /// The line that says "ready" has broken.
+    pub(super) dropped: bool,
+    /// The sender's DTR.
+    pub(super) sender_ready: bool,
+    /// The machine is being asked for what it has.
+    pub(super) pulling: bool,
+    /// When a line that is late goes on.
+    pub(super) line_on_at: Option<Duration>,
 }
 
 /// Characters that have come since DC3 left.
@@ -59,6 +68,10 @@ impl<O: Observer> Controller<O> {
     /// A waiting control asks for the program, first or again.
     pub(super) fn go(&mut self) {
         self.flow.reading = true;
+        if self.has_machine() {
+            self.flow.go_at = None;
+            return self.machine_start();
+        }
         self.flow.go_at = Some(self.now + GO_AGAIN);
         // A control whose buffer is still full asks when it has drained.
         if !self.flow.held {
@@ -79,6 +92,9 @@ impl<O: Observer> Controller<O> {
         if !self.flow.held && fill >= self.settings.xoff_at && !self.is_starving() {
             self.flow.held = true;
             self.tally.holds += 1;
+            if self.has_machine() {
+                return self.machine_holds();
+            }
             let lost = self.faults.strikes(FaultKind::XoffLost);
             self.say(DC3, Meaning::Hold, lost, Duration::ZERO);
         }
@@ -105,6 +121,9 @@ impl<O: Observer> Controller<O> {
 
     fn release(&mut self) {
         self.flow.held = false;
+        if self.has_machine() {
+            return self.machine_goes_on();
+        }
         self.say_go();
         if self.flow.go_at.is_some() {
             self.flow.go_at = Some(self.now + GO_AGAIN);
@@ -124,8 +143,18 @@ impl<O: Observer> Controller<O> {
     }
 
     fn say(&mut self, code: u8, meaning: Meaning, lost: bool, late: Duration) {
-        let byte = if self.settings.dc3_parity { with_even_parity(code) } else { code };
+        let byte = self.with_parity(code);
         self.back.put(Outgoing { byte, meaning, lost, not_before: self.now + late }, self.now);
+    }
+
+    /// What a control with even parity in bit 8 sends for a character.
+    pub(super) fn with_parity(&self, code: u8) -> u8 {
+        if self.settings.dc3_parity { with_even_parity(code) } else { code }
+    }
+
+    /// A hold begins without a character.
+    pub(super) fn begin_overrun(&mut self) {
+        self.flow.overrun = Some(Overrun { since: self.now, characters: 0 });
     }
 
     /// Sends a character back as it came.
@@ -177,7 +206,9 @@ impl<O: Observer> Controller<O> {
         self.tally.alarm_detail = detail;
         self.cut = None;
         self.flow.go_at = None;
-        self.say_stop(NAK, if name == "nak-storm" { 20 } else { 1 });
+        if !self.machine_stops(Stop::Alarm(name)) {
+            self.say_stop(NAK, if name == "nak-storm" { 20 } else { 1 });
+        }
     }
 
     /// Clears everything that has not been cut: DC3, then SYN.
@@ -186,11 +217,14 @@ impl<O: Observer> Controller<O> {
         self.queue.clear();
         self.queued_characters = 0;
         self.reader.reset(&mut self.text);
+        self.decoder.clear();
         self.plan = Plan::new(&self.settings, self.position_um());
         self.flow.deaf = true;
         self.flow.held = false;
         self.flow.go_at = None;
-        self.say_stop(SYN, 1);
+        if !self.machine_stops(Stop::Reset) {
+            self.say_stop(SYN, 1);
+        }
     }
 
     fn say_stop(&mut self, code: u8, times: u32) {
@@ -204,13 +238,20 @@ impl<O: Observer> Controller<O> {
 
     /// When the DC3 after the program's end goes out.
     pub(super) fn end_of_transfer_due(&self) -> Option<Duration> {
-        let due = self.reader.is_after_end() && !self.flow.end_said && !self.flow.held && self.is_running();
+        let due = self.reader.is_after_end()
+            && !self.flow.end_said
+            && !self.flow.held
+            && !self.in_transfer()
+            && self.is_running();
         let silence = END_SILENCE + 2 * self.settings.latency + self.settings.pace.time_of(10);
         due.then(|| self.flow.last_character.max(self.flow.last_go) + silence)
     }
 
     pub(super) fn end_of_transfer(&mut self) {
         self.flow.end_said = true;
+        if self.has_machine() {
+            return;
+        }
         self.say(DC3, Meaning::EndOfTransfer, false, Duration::ZERO);
     }
 }

@@ -1,6 +1,7 @@
 //! What arrives: characters, with whatever the line did to them, and the link's openings and closings among them.
 
 use super::Controller;
+use super::code::NoCharacter;
 use super::cutter::Item;
 use super::reader::Read;
 use crate::dialect::Dialect;
@@ -14,7 +15,8 @@ impl<O: Observer> Controller<O> {
     /// When the next character is complete. An unpaced line carries nothing during a hold, nor before what the control
     /// has to say has left it.
     pub(super) fn character_due(&self) -> Option<Duration> {
-        let held = (self.flow.held && self.is_running()) || !self.back.is_idle();
+        // A machine that answers takes what comes in any case, and what it owes is what holds the sender.
+        let held = (self.flow.held && self.is_running() && self.streams()) || !self.back.is_idle();
         if self.settings.pace == Pace::Unpaced && held {
             return None;
         }
@@ -32,6 +34,9 @@ impl<O: Observer> Controller<O> {
         if self.faults.strikes(FaultKind::Disconnect) {
             return self.pull();
         }
+        if self.faults.strikes(FaultKind::DsrDrop) {
+            return self.drop_ready();
+        }
         if self.faults.strikes(FaultKind::Drop) {
             return;
         }
@@ -44,8 +49,13 @@ impl<O: Observer> Controller<O> {
             byte ^= 1 << self.faults.pick(FaultKind::Flip, 7);
         }
         if self.faults.strikes(FaultKind::Parity) {
-            let number = self.tally.characters + 1;
-            self.raise("parity", Some(format!("character {number}")));
+            // Where blocks are checked, a character with wrong parity arrives as NUL, and the check finds it.
+            if self.has_machine() && !self.streams() {
+                byte = 0x00;
+            } else {
+                let number = self.tally.characters + 1;
+                self.raise("parity", Some(format!("character {number}")));
+            }
         }
         if self.faults.strikes(FaultKind::Echo) {
             self.echo(byte);
@@ -67,9 +77,27 @@ impl<O: Observer> Controller<O> {
             return;
         }
         self.flow.go_at = None;
-        // ISO: bit 8 is parity; NUL is ignored, CR too, by the reader (domain/4, "Character codes").
-        let c = byte & 0x7F;
-        if c == 0x00 {
+        if self.has_machine() {
+            return self.machine_takes(byte);
+        }
+        self.read(byte);
+    }
+
+    /// A character of the program, as it is coded.
+    pub(super) fn read(&mut self, byte: u8) {
+        match self.decoder.take(byte) {
+            Ok(token) => token.bytes().for_each(|c| self.read_plain(c)),
+            Err(NoCharacter { alarm, found }) => {
+                let detail =
+                    format!("block {}, character {}: {found}", self.tally.blocks + 1, self.tally.characters);
+                self.raise(alarm, Some(detail));
+            }
+        }
+    }
+
+    /// A character of the program, decoded.
+    pub(super) fn read_plain(&mut self, c: u8) {
+        if !self.is_running() || self.flow.deaf {
             return;
         }
         let read = self.reader.push(c, &mut self.text, &mut self.observer);
@@ -120,6 +148,8 @@ impl<O: Observer> Controller<O> {
         self.flow.go_at = None;
         self.flow.overrun = None;
         self.flow.reading = false;
+        self.machine_close();
+        self.decoder.clear();
         self.reader.link_closed(self.settings.torn, &mut self.text);
         // What was left of a block no longer fills the buffer.
         self.drained();

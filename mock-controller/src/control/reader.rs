@@ -3,7 +3,7 @@
 //! ```text
 //!   LABEL ──end of block, or a whole block──▶ BETWEEN ◀──complete── BLOCK     Z digit completes a block
 //!     ▲                                       │ B N ─────────────────▲
-//!     │                                       │ ; ( ─▶ COMMENT ─▶ BETWEEN
+//!     │                                       │ ; ( * ─▶ COMMENT ─▶ BETWEEN
 //!     │  link opens, program ends             │ %   ─▶ PERCENT ── end of block ─▶ BETWEEN (leader) or LABEL (end)
 //!     │                                       │ D   ─▶ STOP: D again is the end, anything else was a pause
 //!     └── TAIL ◀── end by E or DD ────────────┘ anything else ─▶ DEAD (malformed)
@@ -12,10 +12,16 @@
 //! White space is free. `%` is the end if a block has come since the link opened and since the last end; otherwise it is
 //! a leader. So a sender that goes on after a broken link may send its leader again.
 //!
-//! Choices where the manuals are silent: `;` to the end of the line and `( )` are comments (listings of CAM systems put
-//! the end point there, domain/2); any other word between blocks is malformed; block numbers are taken and ignored.
+//! Listings of CAM systems (domain/2) have the end point behind `;`, rows of `*`, header rows such as `Start Point = …`
+//! before the first block, and `N  12:` in front of blocks and stop words: all of it is passed.
+//!
+//! Choices where the manuals are silent: `( )` is a comment; any other word between blocks is malformed; block numbers
+//! are not looked at. A header is looked for where a label may stand, and in a row that begins with `S` before the first
+//! block; a row that begins as a block and does not go on as one is no header.
 //!
 //! It does not decide when the alarm for a malformed block is raised: that is when the cutter gets there.
+
+mod label;
 
 use super::settings::{LabelSkip, Torn};
 use super::text::Text;
@@ -34,6 +40,10 @@ pub(crate) struct Reader {
     characters: usize,
     /// The label's first letters that are no white space, in case it is a stop word.
     word: Vec<u8>,
+    /// Rows of a label or header read and discarded before the first block.
+    rows: u64,
+    /// The row of the label began as a block, and has gone on as one.
+    is_block: bool,
     blocks_in_program: u64,
     blocks_on_link: u64,
     place: Place,
@@ -85,6 +95,8 @@ impl Reader {
             pending: Vec::new(),
             characters: 0,
             word: Vec::new(),
+            rows: 0,
+            is_block: true,
             blocks_in_program: 0,
             blocks_on_link: 0,
             place: Place { line: 1, column: 0 },
@@ -158,7 +170,8 @@ impl Reader {
 
     fn begin_label(&mut self, text: &mut Text) {
         text.break_line();
-        self.word.clear();
+        self.begin_row();
+        self.rows = 0;
         self.state = if self.label_skip == LabelSkip::Off { State::Between } else { State::Label };
     }
 
@@ -197,7 +210,7 @@ impl Reader {
                     self.accept(text, observer);
                 }
                 if ends {
-                    self.state = State::Between;
+                    self.state = self.after_comment();
                 }
                 Read::Nothing
             }
@@ -227,71 +240,6 @@ impl Reader {
             State::Tail => self.tail(c, text, observer),
             State::Dead => Read::Nothing,
         }
-    }
-
-    /// Before the first end of block.
-    fn label(&mut self, c: u8, text: &mut Text, observer: &mut impl Observer) -> Read {
-        match c {
-            b'\n' => return self.label_ends(text, observer),
-            DC4 if self.blocks_in_program > 0 => return self.end(text),
-            DC4 => {
-                self.characters = 0;
-                return Read::Nothing;
-            }
-            b'%' if !self.assembly.is_partial() => {
-                self.skip_pending();
-                self.state = State::Percent { ends: false };
-                return Read::Nothing;
-            }
-            _ => {}
-        }
-        if !c.is_ascii_whitespace() && self.word.len() < 3 {
-            self.word.push(c.to_ascii_uppercase());
-        }
-        self.pending.push(c);
-        if self.label_skip == LabelSkip::On {
-            return Read::Nothing;
-        }
-        match self.assembly.push(c) {
-            Step::More => {
-                if !self.assembly.is_partial() {
-                    self.skip_pending_but(0);
-                }
-                Read::Nothing
-            }
-            Step::Complete(block) => self.block_complete(block, text, observer),
-            Step::Wrong { .. } => {
-                // This character may itself begin a block.
-                let begins = self.assembly.push(c) == Step::More && self.assembly.is_partial();
-                self.skip_pending_but(usize::from(begins));
-                Read::Nothing
-            }
-        }
-    }
-
-    fn label_ends(&mut self, text: &mut Text, observer: &mut impl Observer) -> Read {
-        let is_word =
-            self.label_skip == LabelSkip::Auto && matches!(self.word.as_slice(), b"D" | b"DD" | b"E");
-        if is_word {
-            let pauses = self.word == b"D";
-            self.paused |= pauses;
-            self.skipped = self.skipped.saturating_sub(self.word.len() as u64);
-            self.pending.clone_from(&self.word);
-            self.pending.push(b'\n');
-            self.accept(text, observer);
-            self.state = State::Between;
-            return if pauses { Read::Nothing } else { self.end(text) };
-        }
-        if self.assembly.is_begun() {
-            // A block may run over a line end: white space is free.
-            self.pending.push(b'\n');
-            self.state = State::Block { kept: false };
-            return Read::Nothing;
-        }
-        self.assembly.clear();
-        self.skip_pending();
-        self.state = State::Between;
-        Read::Nothing
     }
 
     fn between(&mut self, c: u8, text: &mut Text, observer: &mut impl Observer) -> Read {
@@ -327,7 +275,15 @@ impl Reader {
                 return self.end(text);
             }
             b';' => self.comment(b'\n'),
+            b'*' => {
+                self.rows += u64::from(self.takes_headers());
+                self.comment(b'\n');
+            }
             b'(' => self.comment(b')'),
+            b'S' if self.takes_headers() => {
+                self.begin_row();
+                self.state = State::Label;
+            }
             _ => {
                 self.after_end = false;
                 self.state = State::Block { kept: false };
@@ -351,6 +307,12 @@ impl Reader {
             self.state = State::Percent { ends: false };
             return Read::Nothing;
         }
+        if self.assembly.is_number_alone() && matches!(c, b'D' | b'd' | b'E' | b'e') {
+            // A stop word may be numbered as a block is: `N  16: DD`.
+            self.assembly.clear();
+            self.state = State::Between;
+            return self.between(c, text, observer);
+        }
         self.pending.push(c);
         self.assemble(c, text, observer)
     }
@@ -359,13 +321,15 @@ impl Reader {
         match self.assembly.push(c) {
             Step::More => Read::Nothing,
             Step::Complete(block) => self.block_complete(block, text, observer),
-            Step::Wrong { expected } => {
-                self.state = State::Dead;
-                let Place { line, column } = self.place;
-                let found = char::from(c);
-                Read::Malformed(format!("line {line}, column {column}: expected {expected}, found {found:?}"))
-            }
+            Step::Wrong { expected } => self.malformed(c, expected),
         }
+    }
+
+    fn malformed(&mut self, c: u8, expected: &'static str) -> Read {
+        self.state = State::Dead;
+        let Place { line, column } = self.place;
+        let found = char::from(c);
+        Read::Malformed(format!("line {line}, column {column}: expected {expected}, found {found:?}"))
     }
 
     fn block_complete(&mut self, block: FourBlock, text: &mut Text, observer: &mut impl Observer) -> Read {
@@ -409,6 +373,7 @@ impl Reader {
         }
         self.blocks_in_program = 0;
         self.blocks_on_link = 0;
+        self.rows = 0;
         self.after_end = true;
         Read::End
     }
@@ -416,20 +381,6 @@ impl Reader {
     fn accept(&mut self, text: &mut Text, observer: &mut impl Observer) {
         text.put(&self.pending, observer);
         self.pending.clear();
-    }
-
-    fn skip_pending(&mut self) {
-        self.skip_pending_but(0);
-        self.characters = 0;
-    }
-
-    /// Discards the label's text but for its last `keep` characters.
-    fn skip_pending_but(&mut self, keep: usize) {
-        let discarded = self.pending.len().saturating_sub(keep);
-        self.skipped +=
-            self.pending[..discarded].iter().filter(|byte| !byte.is_ascii_whitespace()).count() as u64;
-        self.pending.drain(..discarded);
-        self.characters = keep;
     }
 }
 

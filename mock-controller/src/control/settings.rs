@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
+use super::code::Code;
 use super::plan::gcode::{GcodeSettings, Register};
+use super::protocol::Protocol;
 use crate::dialect::Dialect;
 use crate::interpolator::Model;
 use crate::line::fault::FaultKind;
@@ -15,6 +17,14 @@ use crate::line::pace::{Framing, Pace};
 pub struct Settings {
     /// How long a character takes, in both directions. Default: 9600 baud, 7E2.
     pub pace: Pace,
+    /// How the control and its sender talk. Default: DC codes.
+    pub protocol: Protocol,
+    /// The character code of the program. Default: ASCII, bit 8 not looked at.
+    pub code: Code,
+    /// An odd number of characters in a block is the alarm `tv`. Default off.
+    pub tv_check: bool,
+    /// Which of the control's lines stop the sender's driver by themselves. Default: CTS.
+    pub handshake: Handshake,
     /// What the programs are written in. Default: 3B.
     pub dialect: Dialect,
     /// The wire offset the control holds, µm. 4B: F, + wire outside (punch), − inside (die). G-code: the offset of G41
@@ -103,6 +113,18 @@ pub enum LabelSkip {
     Off,
 }
 
+/// Which of the control's lines stop the sender's driver by themselves, after the character on the line.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Handshake {
+    /// None: a driver that is not set up for it.
+    Ignored,
+    /// CTS, as drivers and chips do it.
+    #[default]
+    Cts,
+    /// CTS and DSR. No driver does that; it stands for the lines where there are none, over a pseudo-terminal or TCP.
+    Both,
+}
+
 /// When the first DC1 goes out after the link has opened.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Start {
@@ -126,6 +148,10 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             pace: Pace::Paced { baud: 9600, framing: Framing::SEVEN_EVEN_TWO },
+            protocol: Protocol::DcCodes,
+            code: Code::Ascii,
+            tv_check: false,
+            handshake: Handshake::Cts,
             dialect: Dialect::ThreeB,
             wire_offset_um: 0.0,
             taper: None,
@@ -217,6 +243,14 @@ impl Settings {
                 return Err(SettingsError::Taper(taper));
             }
         }
+        if self.dc3_parity && self.protocol.is_eight_bit() {
+            return Err(SettingsError::ParityInEightBits);
+        }
+        if let Protocol::Frames { window } = self.protocol
+            && !(1..=64).contains(&window)
+        {
+            return Err(SettingsError::Window(window));
+        }
         if self.fifo_bytes == 0 {
             return Err(SettingsError::NoFifo);
         }
@@ -270,6 +304,10 @@ pub enum SettingsError {
     Taper(Taper),
     /// Only 4B knows a taper that is keyed in.
     TaperDialect,
+    /// A protocol whose bytes have no parity bit.
+    ParityInEightBits,
+    /// Not between 1 and 64 frames.
+    Window(u8),
     /// No room for a single character.
     NoFifo,
     /// Not a probability.
@@ -327,6 +365,10 @@ impl fmt::Display for SettingsError {
                 height_um / 1000.0
             ),
             SettingsError::TaperDialect => write!(f, "a taper is keyed in for 4B programs only"),
+            SettingsError::ParityInEightBits => {
+                write!(f, "parity in bit 8 of what is said: the bytes of this protocol have all eight")
+            }
+            SettingsError::Window(window) => write!(f, "a window of {window} frames is not between 1 and 64"),
             SettingsError::NoFifo => write!(f, "a driver FIFO of 0 takes nothing"),
             SettingsError::Rate { kind, rate } => {
                 write!(f, "fault {kind}: rate {rate} is not between 0 and 1")

@@ -8,6 +8,9 @@ use std::str::FromStr;
 use std::time::Duration;
 
 /// A kind of fault. The rate of each is a probability from 0 to 1, per character, per DC1, per DC3 or per block.
+///
+/// In a protocol with answers a DC1 is every answer that lets the sender go on (ACK, `ok`, C), a DC3 every one that makes it wait
+/// or send again (NAK, `Resend`); where a line holds the sender they are its going on and off.
 #[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
 pub enum FaultKind {
     /// Per character: one of its seven data bits is turned over, unnoticed by parity.
@@ -24,6 +27,9 @@ pub enum FaultKind {
     Echo,
     /// Per character: the cable is pulled; everything on its way in either direction is lost.
     Disconnect,
+    /// Per character: the line that says "ready" breaks: DSR and CTS go off for good, and the control, which sees its own go
+    /// off, raises the alarm `dsr` (Fanuc's 086).
+    DsrDrop,
     /// Per DC1: it is lost on the line. The first one comes again after 5 s, one that ends a hold does not.
     XonLost,
     /// Per DC1: the control sends it 0.5 s to 5 s late.
@@ -47,7 +53,7 @@ pub enum FaultKind {
 
 impl FaultKind {
     /// Every kind, in the order of their names' use.
-    pub const ALL: [FaultKind; 16] = [
+    pub const ALL: [FaultKind; 17] = [
         FaultKind::Flip,
         FaultKind::Drop,
         FaultKind::Double,
@@ -55,6 +61,7 @@ impl FaultKind {
         FaultKind::Parity,
         FaultKind::Echo,
         FaultKind::Disconnect,
+        FaultKind::DsrDrop,
         FaultKind::XonLost,
         FaultKind::XonLate,
         FaultKind::XonDouble,
@@ -77,6 +84,7 @@ impl FaultKind {
             FaultKind::Parity => "parity",
             FaultKind::Echo => "echo",
             FaultKind::Disconnect => "disconnect",
+            FaultKind::DsrDrop => "dsr-drop",
             FaultKind::XonLost => "xon-lost",
             FaultKind::XonLate => "xon-late",
             FaultKind::XonDouble => "xon-double",
@@ -99,6 +107,7 @@ impl FaultKind {
                 | FaultKind::Parity
                 | FaultKind::Echo
                 | FaultKind::Disconnect
+                | FaultKind::DsrDrop
         )
     }
 }
@@ -221,7 +230,7 @@ mod tests {
         for kind in FaultKind::ALL {
             assert_eq!(kind.name().parse::<FaultKind>(), Ok(kind));
         }
-        assert_eq!("dsr-drop".parse::<FaultKind>(), Err(UnknownFault));
+        assert_eq!("dsr".parse::<FaultKind>(), Err(UnknownFault));
     }
 
     #[test]

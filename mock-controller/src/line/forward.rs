@@ -14,6 +14,8 @@ pub(crate) struct Forward {
     fifo: VecDeque<u8>,
     shifting: Option<u8>,
     run: Run,
+    /// The driver may begin another character.
+    open: bool,
     /// Characters put in since the beginning, and those that have left the shift register.
     put: u64,
     left: u64,
@@ -41,6 +43,7 @@ impl Forward {
             fifo: VecDeque::with_capacity(capacity),
             shifting: None,
             run: Run { start: Duration::ZERO, completed: 0 },
+            open: true,
             put: 0,
             left: 0,
             marks: VecDeque::new(),
@@ -60,11 +63,21 @@ impl Forward {
         let accepted = bytes.len().min(self.room());
         self.fifo.extend(&bytes[..accepted]);
         self.put += u64::try_from(accepted).unwrap_or(u64::MAX);
-        if self.shifting.is_none() {
+        self.begin(now);
+        accepted
+    }
+
+    fn begin(&mut self, now: Duration) {
+        if self.open && self.shifting.is_none() {
             self.run = Run { start: now, completed: 0 };
             self.shifting = self.fifo.pop_front();
         }
-        accepted
+    }
+
+    /// A line of the control stops the driver after the character on the line, or lets it go on.
+    pub(crate) fn gate(&mut self, open: bool, now: Duration) {
+        self.open = open;
+        self.begin(now);
     }
 
     pub(crate) fn mark(&mut self, mark: Mark) {
@@ -95,7 +108,7 @@ impl Forward {
         let byte = self.shifting.take()?;
         self.run.completed += 1;
         self.left += 1;
-        self.shifting = self.fifo.pop_front();
+        self.shifting = if self.open { self.fifo.pop_front() } else { None };
         Some(byte)
     }
 

@@ -10,12 +10,14 @@ use std::time::Duration;
 use serialport::{DataBits, FlowControl, SerialPort, StopBits};
 
 use super::{Link, News, pause};
+use crate::control::Lines;
 use crate::line::pace::{Framing, Parity};
 
 /// A serial device.
 pub struct SerialLink {
     port: Box<dyn SerialPort>,
     told: bool,
+    lines: Option<Lines>,
 }
 
 impl SerialLink {
@@ -47,7 +49,7 @@ impl SerialLink {
         // A pseudo-terminal has no modem lines.
         let _ = port.write_data_terminal_ready(true);
         let _ = port.write_request_to_send(true);
-        Ok(SerialLink { port, told: false })
+        Ok(SerialLink { port, told: false, lines: None })
     }
 }
 
@@ -83,6 +85,16 @@ impl Link for SerialLink {
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.port.write_all(bytes)
+    }
+
+    /// The control's RTS is the sender's CTS, its DTR the sender's DSR; a device without lines is let be.
+    fn lines(&mut self, lines: Lines) -> io::Result<Option<bool>> {
+        if self.lines != Some(lines) {
+            self.lines = Some(lines);
+            let _ = self.port.write_request_to_send(lines.cts);
+            let _ = self.port.write_data_terminal_ready(lines.dsr);
+        }
+        Ok(self.port.read_data_set_ready().ok())
     }
 
     fn pull(&mut self) -> io::Result<()> {

@@ -174,3 +174,50 @@ fn the_report_has_the_fields_of_the_contract() {
     assert_eq!(report["faults"], serde_json::json!({}));
     assert_eq!(report["line_utilisation"], serde_json::Value::Null);
 }
+
+#[test]
+fn a_listing_of_a_cam_system_is_cut_with_its_header_numbers_and_end_points() {
+    let listing = "\
+        *****************************************\n\
+        CAMWEDM -Version 2.0 , Name : 1.3B\n\
+        Conner R= 0.00000 , Offset F= 0.11000 ,Length= 81.7\n\
+        ; made by hand: B1B1B1GXL1\n\
+        *****************************************\n\
+        Start Point = 0.00000 , 0.00000 ; X , Y\n\
+        N   1: B 0 B 5000 B 5000 GY L2 ; 0.000 , 5.000\n\
+        N   2: D\n\
+        *****************************************\n\
+        N   3: B 5000 B 0 B 5000 GX L1 ; 5.000 , 5.000\n\
+        N   4: DD\n";
+    for leader in ["", "%\n"] {
+        for end in ["\n", "\r\n"] {
+            let report = run_unpaced(&format!("{leader}{}", listing.replace('\n', end)));
+            let found = (report.blocks, report.end_um, report.programs, report.alarm.as_deref());
+            assert_eq!(found, (2, [5000, 5000], 1, None), "{leader:?} {:?}", report.alarm_detail);
+        }
+    }
+    for (word, programs) in [("N16:DD", 1), ("n 16: e", 1), ("N 16: D", 0)] {
+        let report = run_unpaced(&format!("%\n{BLOCK}\n{word}\n"));
+        assert_eq!((report.blocks, report.programs, report.alarm), (1, programs, None), "{word}");
+    }
+}
+
+#[test]
+fn a_header_hides_no_broken_block() {
+    for broken in ["B10B10GXL1", "N 1: B10B10GXL1", "B10BB10GXL5", "N 1: B1.0BB10GXL1"] {
+        let report = run_unpaced(&format!("*****\nStart Point = 0 , 0\n{broken}\n{BLOCK}\nDD\n"));
+        assert_eq!((report.blocks, report.alarm.as_deref()), (0, Some("format")), "{broken}");
+    }
+    let report = run_unpaced(&format!("%\n{BLOCK}\nStart Point = 0\n{BLOCK}\nDD\n"));
+    assert_eq!((report.blocks, report.alarm.as_deref()), (1, Some("format")));
+}
+
+#[test]
+fn the_die_of_the_examples_is_cut_to_its_end() {
+    let die =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/examples/die.4b")).unwrap();
+    let settings =
+        Settings { dialect: mock_controller::Dialect::FourB, wire_offset_um: -59.0, ..Settings::unpaced() };
+    let report = run(settings, &mut Sender::of(die).window(4096));
+    assert_eq!((report.blocks, report.end_um, report.programs, report.alarm), (15, [0, 0], 1, None));
+}
