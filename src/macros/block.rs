@@ -33,7 +33,12 @@ pub struct Word<N> {
 #[derive(Clone, Copy, Debug)]
 pub enum Amount<N> {
     /// As it is written in the program: `G01`, `F200`, `X25`. What a missing point means is the printer's to know.
-    Written(numbers::Number),
+    Written {
+        /// Its value.
+        number: numbers::Number,
+        /// Where its digits (with their sign) stand in the program's text, without blanks: from, to.
+        digits: (u32, u32),
+    },
     /// Computed: `X[#101]`, `X#1`, `X-#1`; a length in the program's unit, an angle in degrees.
     Computed(N),
 }
