@@ -12,4 +12,7 @@
 //! an error.
 
 pub mod block;
+pub mod form;
 pub mod number;
+pub mod printer;
+mod suppress;
