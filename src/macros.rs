@@ -15,4 +15,5 @@ pub mod block;
 pub mod form;
 pub mod number;
 pub mod printer;
+pub mod starvation;
 mod suppress;
