@@ -3,8 +3,7 @@
 //! Each block takes the control its length over the feed, and the line its characters; the control's buffer lies between
 //! them, full at first. Where it runs empty the machine stands still between blocks, and on the part that shows. Straight
 //! moves in X, Y, Z with a feed a minute (G94) are counted; an arc by its chord, so that it never seems slower than it is. A
-//! block whose length or feed is not known (without a point under no rule, G93, G95, an incremental start from nowhere)
-//! is passed over. Acceleration is not known, so a machine wants less than is said here, never more.
+//! block whose length or feed is not known (without a point under no rule, G93, G95, from nowhere) is passed over. Acceleration is not known, so a machine wants less than is said here, never more.
 
 use super::block::{Amount, Block, Word};
 use super::form::Form;
@@ -76,6 +75,7 @@ impl Starvation {
     /// Sees a block, with its number and how many characters were printed of it.
     pub fn see<N: Number>(&mut self, form: &Form, block: &Block<N>, number: u64, characters: usize) {
         let mut goes = self.at;
+        let mut squares = Some(0.0);
         let mut moves = false;
         let mut elsewhere = false;
         for word in &block.words {
@@ -98,12 +98,14 @@ impl Starvation {
         for word in block.words.iter().filter(|word| matches!(word.letter, b'X'..=b'Z')) {
             let axis = &mut goes[usize::from(word.letter - b'X')];
             let value = value(form, self.unit, word);
-            *axis = if self.incremental { value.zip(*axis).map(|(by, at)| at + by) } else { value };
+            let by = if self.incremental { value } else { value.zip(*axis).map(|(to, from)| to - from) };
+            squares = squares.zip(by).map(|(sum, by)| sum + by * by);
+            *axis = if self.incremental { value.zip(*axis).map(|(by, from)| from + by) } else { value };
             moves = true;
         }
-        let from = std::mem::replace(&mut self.at, if elsewhere { [None; 3] } else { goes });
+        self.at = if elsewhere { [None; 3] } else { goes };
         let characters = (characters + self.line.end_of_block) as f64;
-        let length = moved(from, goes).filter(|_| moves && !elsewhere);
+        let length = squares.map(f64::sqrt).filter(|_| moves && !elsewhere);
         let feed = self.feed.filter(|_| self.feed_a_minute && matches!(self.motion, Some(1..=3)));
         let Some((length, feed)) = length.zip(feed) else {
             // The control takes it out of its buffer at once, or for as long as nobody knows: the line has the time.
@@ -142,19 +144,6 @@ impl Account {
             100.0 * self.waiting / (self.moving + self.waiting),
         ))
     }
-}
-
-/// How far it is where both ends are known; an axis that does not move need not be known.
-fn moved(from: [Option<f64>; 3], to: [Option<f64>; 3]) -> Option<f64> {
-    let mut squares = 0.0;
-    for (from, to) in from.into_iter().zip(to) {
-        match (from, to) {
-            (Some(from), Some(to)) => squares += (to - from) * (to - from),
-            (None, None) => {}
-            _ => return None,
-        }
-    }
-    Some(squares.sqrt())
 }
 
 fn code<N: Number>(word: &Word<N>) -> Option<i64> {
