@@ -8,7 +8,7 @@ fn a_loop_by_hundredths_overruns_as_binary_controls_do() {
         x = x.minus(step).unwrap();
         turns += 1;
         if turns == 250 {
-            assert_eq!(x.text(), "20.00000000000009");
+            assert_eq!(x.text(), "20.000000000000107");
         }
     }
     assert_eq!((turns, x.at_decimals(3)), (251, Some(19_980)));

@@ -25,8 +25,9 @@ fn sums_differences_and_products_are_exact_while_they_fit() {
 
 #[test]
 fn what_does_not_fit_is_rounded_once_with_halves_to_even() {
-    // 19 digits and a half: the last is even already, or becomes so.
-    assert_eq!(spelled(number("4000000000000000.5").plus(number("0.0005"))), "4000000000000000.5005");
+    // Nineteen digits are held, and a half of the last becomes even.
+    assert_eq!(spelled(number("4000000000000000.5").plus(number("0.0015"))), "4000000000000000.502");
+    assert_eq!(spelled(number("4000000000000000.5").plus(number("0.0005"))), "4000000000000000.5");
     assert_eq!(spelled(number("4000000000000000000").plus(number("0.5"))), "4000000000000000000");
     assert_eq!(spelled(number("4000000000000000001").plus(number("0.5"))), "4000000000000000002");
     assert_eq!(spelled(number("4000000000000000001").plus(number("0.4"))), "4000000000000000001");
@@ -135,7 +136,7 @@ fn roots_that_have_an_end_are_exact() {
         ("0", "0"),
         ("2", "1.414213562373095"),
         ("3", "1.732050807568877"),
-        ("39304", "198.25236442473422"),
+        ("39304", "198.25236442474022"),
         ("0.000000000000000002", "0.000000001414214"),
     ] {
         assert_eq!(spelled(function(Function::Root, of)), root, "SQRT[{of}]");
@@ -169,7 +170,7 @@ fn sines_and_cosines_of_whole_parts_of_a_turn_are_exact() {
         ("-30", "-0.5", "0.866025403784439"),
         ("-90", "-1", "0"),
         ("36000000000000030", "0.5", "0.866025403784439"),
-        ("9.223372036854775807", "0.160284188750855", "0.987070904107951"),
+        ("9.223372036854775807", "0.160283846012897", "0.987070964372529"),
         ("0.000000000000000001", "0", "1"),
     ] {
         assert_eq!(spelled(function(Function::Sine, angle)), sine, "SIN[{angle}]");
@@ -189,7 +190,7 @@ fn a_tangent_is_exact_at_whole_eighths_and_missing_at_right_angles() {
         ("60", "1.73205080756888"),
         ("30", "0.577350269189626"),
         ("120", "-1.73205080756888"),
-        ("-89.999", "-57295.7795072639"),
+        ("-89.999", "-57295.7795072646"),
     ] {
         assert_eq!(spelled(function(Function::Tangent, angle)), tangent, "TAN[{angle}]");
     }
@@ -206,9 +207,9 @@ fn inverse_functions_give_degrees() {
         ("1", "90", "0"),
         ("-0.5", "-30", "120"),
         ("-1", "-90", "180"),
-        ("0.8", "53.1301023541559", "36.8698976458441"),
+        ("0.8", "53.130102354156", "36.869897645844"),
         // Beyond the digits of an f64: the angle of 1e-18 missing is not nothing.
-        ("0.999999999999999999", "89.999999918971531", "0.000000081028469"),
+        ("0.999999999999999999", "89.999999918971532", "0.000000081028468"),
     ] {
         assert_eq!(spelled(function(Function::ArcSine, of)), sine, "ASIN[{of}]");
         assert_eq!(spelled(function(Function::ArcCosine, of)), cosine, "ACOS[{of}]");
@@ -246,7 +247,7 @@ fn growth_and_its_inverse_are_right_to_fifteen_digits() {
     assert_eq!(spelled(function(Function::Exponential, "0")), "1");
     assert_eq!(spelled(function(Function::Exponential, "1")), "2.71828182845905");
     assert_eq!(spelled(function(Function::Exponential, "-1")), "0.367879441171442");
-    assert_eq!(spelled(function(Function::Exponential, "40.5")), "388084696249500000");
+    assert_eq!(spelled(function(Function::Exponential, "40.5")), "388084696243620000");
     assert_eq!(function(Function::Exponential, "44"), Err(Undefined::TooLarge));
     assert_eq!(spelled(function(Function::Exponential, "-1000")), "0");
     assert_eq!(spelled(function(Function::Logarithm, "1")), "0");
@@ -270,8 +271,8 @@ fn whole_powers_are_exact_while_the_digits_hold() {
         ("0", "3", "0"),
         ("2", "0.5", "1.4142135623731"),
         ("1.1", "20", "6.72749994932560"),
-        ("1.000001", "1000000", "2.71828046909575"),
-        ("-1.000001", "1000001", "-2.71828318737622"),
+        ("1.000001", "1000000", "2.71828046931938"),
+        ("-1.000001", "1000001", "-2.71828318759985"),
         ("0.1", "40", "0"),
         ("8", "0.333333333333333333", "2"),
     ] {

@@ -17,7 +17,8 @@ pub(super) fn fitted(value: i128, scale: u8) -> Result<Decimal, Undefined> {
         // Between 2^(length - 1) and 2^length: at least so many digits are too many. 1233/4096 is a little less than lg 2.
         let length = 128 - size.leading_zeros();
         drop = drop.max((((length - 64) * 1233) >> 12) as u8);
-        while size > u128::from(MANTISSA_MAX) * u128::from(power(drop)) {
+        // Up to half a unit more is rounded down again.
+        while size > u128::from(MANTISSA_MAX) * u128::from(power(drop)) + u128::from(power(drop) / 2) {
             drop += 1;
         }
     }
@@ -44,7 +45,8 @@ pub(super) fn quotient(one: Decimal, other: Decimal) -> Result<Decimal, Undefine
     let length = |size: u64| 64 - size.leading_zeros();
     // So many fit surely: dividend < 2^length, divisor >= 2^(length - 1), quotient < 2^63.
     let mut noughts = noughts_max.min(((62 + length(divisor) - length(dividend)) * 1233) >> 12);
-    let room = u128::from(MANTISSA_MAX) * u128::from(divisor);
+    // Up to half a unit more is rounded down again.
+    let room = u128::from(MANTISSA_MAX) * u128::from(divisor) + u128::from(divisor / 2);
     while noughts < noughts_max && raised(dividend, noughts + 1).is_some_and(|raised| raised <= room) {
         noughts += 1;
     }
