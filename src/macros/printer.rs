@@ -10,6 +10,9 @@ use super::number::Number;
 use super::suppress::InForce;
 use crate::place::Spot;
 
+#[cfg(test)]
+mod tests;
+
 /// What was printed of a block.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Printed {

@@ -116,7 +116,8 @@ impl Starvation {
         self.account.moving += moving;
         self.account.sending += sending;
         self.level += moving * self.line.rate - characters;
-        if self.level < 0.0 {
+        // Half a character: less is rounding.
+        if self.level < -0.5 {
             self.account.waiting += -self.level / self.line.rate;
             if self.account.first == 0 {
                 self.account.first = number;
@@ -165,3 +166,50 @@ fn value<N: Number>(form: &Form, unit: usize, word: &Word<N>) -> Option<f64> {
 }
 
 const POWERS: [f64; 10] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::macros::decimal::Decimal;
+
+    fn step(x_micrometres: i64) -> Block<Decimal> {
+        let whole = |n| Amount::Computed(Decimal::whole(n));
+        let words = vec![
+            Word { letter: b'G', amount: whole(1) },
+            Word { letter: b'X', amount: Amount::Computed(Decimal::written(x_micrometres, 3)) },
+            Word { letter: b'Y', amount: whole(0) },
+            Word { letter: b'Z', amount: whole(0) },
+            Word { letter: b'F', amount: whole(60) },
+        ];
+        Block { words, ..Block::default() }
+    }
+
+    /// 60 mm/min are 1 mm/s: a block of 0.1 mm takes the machine 0.1 s, and 20 characters take the line 0.2 s.
+    #[test]
+    fn a_line_of_half_the_speed_makes_the_machine_wait_half_the_time() {
+        let line = Line { rate: 100.0, buffer: 1000.0, end_of_block: 1 };
+        let mut starvation = Starvation::new(line);
+        for n in 0..=1000 {
+            starvation.see(&Form::default(), &step(100 * n), n as u64 + 1, 19);
+        }
+        let account = starvation.account();
+        assert_eq!(account.blocks, 1000, "where the first begins is not known");
+        assert!((account.moving - 100.0).abs() < 1e-9 && (account.sending - 200.0).abs() < 1e-9);
+        // 1000 characters are there at first, the line is 10 short a block: for 100 blocks they last.
+        assert_eq!(account.first, 102);
+        assert!((account.waiting - 90.0).abs() < 1e-6, "{}", account.waiting);
+        let text = account.text().unwrap();
+        assert!(text.contains("10.0 blocks a second, and the line carries 5.0: from block 102"), "{text}");
+        assert!(text.ends_with("47 % of its time"), "{text}");
+    }
+
+    #[test]
+    fn a_line_that_keeps_up_is_not_spoken_of() {
+        let line = Line { rate: 200.0, buffer: 20.0, end_of_block: 1 };
+        let mut starvation = Starvation::new(line);
+        for n in 0..=1000 {
+            starvation.see(&Form::default(), &step(100 * n), n as u64 + 1, 19);
+        }
+        assert_eq!(starvation.account().text(), None);
+    }
+}

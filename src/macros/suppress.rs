@@ -33,7 +33,9 @@ impl InForce {
         let is_plain = codes().all(|code| matches!(code, Some(0..=3 | 17..=19 | 90 | 91 | 94)));
         if !is_plain {
             // Coordinates mean something else here, or the block changes what they are counted from.
-            *self = Self { distance: self.distance, ..Self::default() };
+            let keeps = |code: Option<i64>| matches!(code, Some(0..=4 | 10 | 17..=30 | 40..=59 | 90..=99));
+            let motion = self.motion.filter(|_| codes().all(keeps));
+            *self = Self { distance: self.distance, motion, ..Self::default() };
             for code in codes().flatten() {
                 match code {
                     0..=3 => self.motion = Some(code),
