@@ -11,5 +11,7 @@
 //! floating point is followed on request ([`binary`]). Nothing here reads a file or a clock, and nothing is emitted past
 //! an error.
 
+pub mod binary;
 pub mod block;
+pub mod decimal;
 pub mod number;

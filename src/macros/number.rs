@@ -3,6 +3,8 @@
 //! The language runs over this trait, so that a program can be run in decimals or, for a control that really counts so,
 //! in binary floating point. Null (an undefined variable) is not a number: it is the language's.
 
+pub(super) mod codes;
+
 use std::cmp::Ordering;
 use std::fmt::Debug;
 
