@@ -14,4 +14,19 @@
 pub mod binary;
 pub mod block;
 pub mod decimal;
+pub mod findings;
 pub mod number;
+pub mod options;
+pub mod program;
+pub mod run;
+
+mod arguments;
+mod calls;
+mod code;
+mod diagnosis;
+mod expression;
+mod line;
+mod modal;
+mod statement;
+mod variables;
+mod words;
