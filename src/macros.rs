@@ -14,8 +14,23 @@
 pub mod binary;
 pub mod block;
 pub mod decimal;
+pub mod findings;
 pub mod form;
 pub mod number;
+pub mod options;
 pub mod printer;
+pub mod program;
+pub mod run;
 pub mod starvation;
+
+mod arguments;
+mod calls;
+mod code;
+mod diagnosis;
+mod expression;
+mod line;
+mod modal;
+mod statement;
 mod suppress;
+mod variables;
+mod words;

@@ -36,7 +36,8 @@ pub enum Amount<N> {
     Written {
         /// Its value.
         number: numbers::Number,
-        /// Where its digits (with their sign) stand in the program's text, without blanks: from, to.
+        /// Where its digits (with their sign) stand in the text of its source, without blanks: from, to. Nowhere (0, 0)
+        /// for the M00 of `#3006`.
         digits: (u32, u32),
     },
     /// Computed: `X[#101]`, `X#1`, `X-#1`; a length in the program's unit, an angle in degrees.
