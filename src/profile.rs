@@ -50,7 +50,9 @@ pub struct Profile {
     pub dialect: Option<String>,
     /// How blocks made of macro programs are spelled.
     pub form: Form,
-    /// What macro programs count with.
+    /// How macro programs are read and run.
+    pub macros: crate::macros::options::Options,
+    /// What they count with.
     pub arithmetic: Arithmetic,
     /// How far the machine travels, where the profile says.
     pub travel: Travel,
@@ -154,6 +156,7 @@ impl Profile {
             buffer_bytes: 0,
             dialect: None,
             form: Form::default(),
+            macros: crate::macros::options::Options::default(),
             arithmetic: Arithmetic::default(),
             travel: Travel::default(),
             taper_max_degrees: None,
@@ -270,8 +273,7 @@ impl Profile {
         self.buffer_bytes = buffer.unwrap_or(self.buffer_bytes);
 
         gcode::form(&mut self.form, gcode, &mut given)?;
-        let arithmetic = gcode::arithmetic(macros)?;
-        given("numbers", arithmetic.is_some());
+        let arithmetic = gcode::macros(&mut self.macros, &mut self.form, macros, &mut given)?;
         self.arithmetic = arithmetic.unwrap_or(self.arithmetic);
 
         self.dialect = control.text("dialect")?.map(str::to_owned).or(self.dialect.take());
@@ -341,7 +343,7 @@ fn within(section: &Section<'_>, key: &'static str, most: f64) -> Result<Option<
 }
 
 /// Every key of a profile with its section.
-const KEYS: [(&str, &str); 30] = [
+const KEYS: [(&str, &str); 33] = [
     ("machine", "name"),
     ("link", "baud"),
     ("link", "framing"),
@@ -369,6 +371,9 @@ const KEYS: [(&str, &str); 30] = [
     ("gcode", "n_last"),
     ("gcode", "line_max"),
     ("macros", "numbers"),
+    ("macros", "control"),
+    ("macros", "without_point"),
+    ("macros", "semicolon"),
     ("travel", "x_mm"),
     ("travel", "y_mm"),
     ("taper", "max_degrees"),

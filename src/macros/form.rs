@@ -87,10 +87,9 @@ impl Default for Form {
 }
 
 impl Form {
-    /// The same for a dialect: its letters, and its rule for numbers without a point.
+    /// The same for the letters of a dialect.
     #[must_use]
     pub fn of_dialect(mut self, dialect: &Dialect) -> Self {
-        self.without_point = dialect.without_point;
         for (letter, amount) in (b'A'..=b'Z').zip(&mut self.amounts) {
             *amount = match dialect.role(letter) {
                 Role::Length(_) | Role::Angle | Role::OffsetValue => AmountOf::Length,

@@ -53,10 +53,16 @@ impl Printer {
         Self { form, unit: 0, in_force: suppress.then(InForce::default), number: 0 }
     }
 
-    /// Whether a block's spelling depends on the blocks before it, other than by the unit.
+    /// How it spells.
+    #[must_use]
+    pub fn form(&self) -> &Form {
+        &self.form
+    }
+
+    /// Whether a block's spelling depends on the blocks before it.
     #[must_use]
     pub fn looks_back(&self) -> bool {
-        self.in_force.is_some()
+        self.in_force.is_some() || matches!(self.form.numbers, Numbering::Count { .. })
     }
 
     /// Appends a block's text, without an end of line. `source` is the text of the program.
@@ -176,15 +182,13 @@ impl Printer {
         match word.amount {
             Amount::Written { number, digits: (from, to) } => {
                 if word.letter == b'G' && number.decimals == 0 {
-                    match number.mantissa {
-                        20 | 70 => self.unit = 1,
-                        21 | 71 => self.unit = 0,
-                        _ => {}
-                    }
+                    self.unit_word(number.mantissa);
                 }
                 let value = (kind == AmountOf::Length).then(|| self.form.value(self.unit, number)).flatten();
                 match value {
                     Some(value) => self.length(value, text),
+                    // Nobody wrote it.
+                    None if from == to => signed(number.mantissa, text),
                     None => {
                         text.extend_from_slice(source.get(from as usize..to as usize).unwrap_or_default())
                     }
@@ -211,6 +215,9 @@ impl Printer {
                     },
                     AmountOf::Feed | AmountOf::Code => match (value.as_whole(), value.at_decimals(3)) {
                         (Some(whole), _) => {
+                            if kind == AmountOf::Code {
+                                self.unit_word(whole);
+                            }
                             signed(whole, text);
                             Ok(())
                         }
@@ -239,6 +246,15 @@ impl Printer {
                     },
                 }
             }
+        }
+    }
+
+    /// Lengths behind it are in its unit.
+    fn unit_word(&mut self, code: i64) {
+        match code {
+            20 | 70 => self.unit = 1,
+            21 | 71 => self.unit = 0,
+            _ => {}
         }
     }
 

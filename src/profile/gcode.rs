@@ -2,6 +2,7 @@
 
 use crate::keys::{KeyError, Section};
 use crate::macros::form::{Form, Numbering, Point};
+use crate::macros::options::{Control, Options, Pointless, Semicolon};
 
 /// What macro programs count with.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -82,7 +83,44 @@ const COUNT: Numbering = Numbering::Count { step: 10, last: 9999 };
 
 const NOT_COUNTED: &str = "goes with `n_numbers = \"count\"`";
 
-/// What `[macros] numbers` says.
-pub(super) fn arithmetic(section: &Section<'_>) -> Result<Option<Arithmetic>, KeyError> {
-    section.word("numbers", &ARITHMETIC)
+/// Takes over what `[macros]` gives; returns what it says to count with.
+pub(super) fn macros(
+    rules: &mut Options,
+    form: &mut Form,
+    section: &Section<'_>,
+    given: &mut impl FnMut(&'static str, bool),
+) -> Result<Option<Arithmetic>, KeyError> {
+    let control = section.word("control", &[("fanuc", Control::Fanuc), ("haas", Control::Haas)])?;
+    given("control", control.is_some());
+    rules.control = control.unwrap_or(rules.control);
+    let pointless = section.word(
+        "without_point",
+        &[
+            ("refuse", Pointless::Refused),
+            ("whole", Pointless::Whole),
+            ("increment", Pointless::LeastIncrement),
+        ],
+    )?;
+    given("without_point", pointless.is_some());
+    if let Some(pointless) = pointless {
+        rules.pointless = pointless;
+        form.without_point = match pointless {
+            Pointless::Refused => [None; 2],
+            Pointless::Whole => [Some(1_000_000), Some(25_400_000)],
+            Pointless::LeastIncrement => [Some(1_000), Some(2_540)],
+        };
+    }
+    let semicolon = section.word(
+        "semicolon",
+        &[
+            ("refuse", Semicolon::Refused),
+            ("end-of-block", Semicolon::EndOfBlock),
+            ("remark", Semicolon::Remark),
+        ],
+    )?;
+    given("semicolon", semicolon.is_some());
+    rules.semicolon = semicolon.unwrap_or(rules.semicolon);
+    let arithmetic = section.word("numbers", &ARITHMETIC)?;
+    given("numbers", arithmetic.is_some());
+    Ok(arithmetic)
 }
