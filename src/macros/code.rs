@@ -221,6 +221,14 @@ pub(super) struct TemplateWord {
     pub value: Value,
 }
 
+impl TemplateWord {
+    /// Whether it is G20 or G21.
+    pub(super) fn is_unit(self) -> bool {
+        let Value::Written(number, _) = self.value else { return false };
+        self.letter == b'G' && matches!(super::words::tenths(number), Some(200 | 210))
+    }
+}
+
 /// The number of a word.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Value {

@@ -42,7 +42,7 @@ impl<N: Number> Machine<N> {
         }
         let at = program.code.marks[pc];
         let message =
-            format!("the loop does not run: {}", condition(program, at, comparison, [a, b], &self.cells));
+            format!("the loop does not run: {}", condition(program, at, comparison, [a, b], &self.cells[..]));
         let help = "look at the start value and the comparison";
         let error = program.shown(Fault::new(NEVER_RUNS, at, message, help));
         self.findings.push(Finding { severity: Severity::Warning, error });
@@ -72,7 +72,7 @@ impl<N: Number> Machine<N> {
         let leave = around.body.checked_sub(1).map(|pc| code.ops[pc as usize]);
         let message = match leave {
             Some(Op::LeaveUnlessCompare { comparison, a, b, .. }) => {
-                let condition = condition(program, around.at, comparison, [a, b], &self.cells);
+                let condition = condition(program, around.at, comparison, [a, b], &self.cells[..]);
                 format!("{steps}: the loop DO{} does not end; {condition}", around.number)
             }
             _ => format!("{steps}: the loop DO{} does not end", around.number),

@@ -71,7 +71,7 @@ impl<N: Number> State<N> {
         if let Some(number) = number.and_then(|n| i64::try_from(n).ok()) {
             self.letters[usize::from(b'N' - b'A')] = Some(N::whole(number));
         }
-        let mut presets = false;
+        let (mut presets, mut loses) = (false, false);
         for word in words {
             let code = match word.amount {
                 Amount::Written { number, .. } => tenths(number),
@@ -93,6 +93,7 @@ impl<N: Number> State<N> {
                 b'G' => {
                     let Some(code) = code else { continue };
                     presets |= code == 920;
+                    loses |= LOSES_POSITION.contains(&code);
                     self.set(code);
                     if skip > 0
                         && let Some(group) = group(code)
@@ -110,7 +111,7 @@ impl<N: Number> State<N> {
                 }
             }
         }
-        if template.moves || presets {
+        if (template.moves || presets) && !loses {
             for word in words.iter().filter(|word| is_axis(word.letter)) {
                 self.go(options, skip, presets, word);
             }

@@ -9,6 +9,7 @@ use super::block::{Amount, Block, Turn, Word};
 use super::calls::{Frame, Modal};
 use super::code::{Comparison, Op, Sign, Template, Value};
 use super::findings::{Fault, Finding, MacroError};
+use super::foresight::compared;
 use super::modal::{Effect, State};
 use super::number::{Bits, Number, Rounding, Undefined};
 use super::options::decimals;
@@ -25,7 +26,8 @@ pub struct Expansion<N> {
 /// Everything that changes while a program runs.
 #[derive(Debug)]
 pub(super) struct Machine<N> {
-    pub cells: Vec<Option<N>>,
+    /// As many as an operation can name, so that no access has to be tested.
+    pub cells: Box<[Option<N>; CELLS]>,
     pub pc: u32,
     pub frames: Vec<Frame>,
     /// The variables of the levels that wait.
@@ -50,6 +52,7 @@ pub(super) struct Machine<N> {
     scratch: Vec<Word<N>>,
 }
 
+const CELLS: usize = 1 << 16;
 /// The most that is noted while running.
 const FINDINGS_MAX: usize = 50;
 
@@ -58,9 +61,17 @@ impl<N: Number> Expansion<N> {
     #[must_use]
     pub fn new(program: Arc<Program>) -> Self {
         let code = &program.code;
-        let mut cells = vec![None; usize::from(CONSTANTS)];
-        cells.extend(code.constants.iter().map(|(digits, decimals)| Some(N::written(*digits, *decimals))));
+        let mut cells: Box<[Option<N>; CELLS]> =
+            vec![None; CELLS].try_into().unwrap_or_else(|_| unreachable!());
+        for (cell, (digits, decimals)) in cells[usize::from(CONSTANTS)..].iter_mut().zip(&code.constants) {
+            *cell = Some(N::written(*digits, *decimals));
+        }
         let has_modal = code.ops.iter().any(|op| matches!(op, Op::SetModal { .. }));
+        // What a word is rounded to and an argument without a point depend on the unit.
+        let asks_unit = code.ops.iter().any(|op| matches!(op, Op::Round { letter: 1.., .. }))
+            || code.calls.iter().any(|call| !call.arguments.is_empty());
+        let changes_unit = code.templates.iter().any(|template| template.computed_code)
+            || code.words.iter().any(|word| word.is_unit());
         let machine = Machine {
             cells,
             pc: program.units[0].entry,
@@ -75,7 +86,7 @@ impl<N: Number> Expansion<N> {
             turned: vec![false; code.loops.len()],
             findings: Vec::new(),
             noted: vec![false; code.ops.len()],
-            follows: code.reads_state || has_modal,
+            follows: code.reads_state || has_modal || asks_unit && changes_unit,
             scratch: Vec::new(),
         };
         Self { program, machine }
@@ -483,27 +494,10 @@ impl<N: Number> Machine<N> {
         }
     }
 
-    /// A comparison. Undefined and 0 differ to EQ and NE alone (Mitsubishi M700V, 13.5: "<Vacant> and 0 are not
-    /// equivalent for EQ and NE only").
     #[inline]
     fn holds(&self, comparison: Comparison, a: u16, b: u16) -> bool {
         let (a, b) = (self.cells[usize::from(a)], self.cells[usize::from(b)]);
-        let order = match (a, b) {
-            (Some(a), Some(b)) => a.compare(b),
-            _ => match comparison {
-                Comparison::Equal => return a.is_none() && b.is_none(),
-                Comparison::NotEqual => return a.is_some() || b.is_some(),
-                _ => a.unwrap_or(N::ZERO).compare(b.unwrap_or(N::ZERO)),
-            },
-        };
-        match comparison {
-            Comparison::Equal => order.is_eq(),
-            Comparison::NotEqual => order.is_ne(),
-            Comparison::Greater => order.is_gt(),
-            Comparison::GreaterOrEqual => order.is_ge(),
-            Comparison::Less => order.is_lt(),
-            Comparison::LessOrEqual => order.is_le(),
-        }
+        compared(comparison, a, b)
     }
 
     #[inline]

@@ -19,6 +19,8 @@ pub(super) struct Statements {
     pub skip: u8,
     /// Operations other than those that compute words: what a `/` in front cannot leave to the control.
     pub acts: bool,
+    /// The first operation of the line.
+    pub first: u32,
     /// Jumps over the rest of the line.
     over: Vec<u32>,
 }
@@ -26,7 +28,7 @@ pub(super) struct Statements {
 impl Reader<'_> {
     /// Reads the statements of the line that was cut last.
     pub(super) fn statements(&mut self, parser: &mut Parser<'_>) -> Result<Statements, Fault> {
-        let mut read = Statements::default();
+        let mut read = Statements { first: parser.code.next(), ..Statements::default() };
         self.front(parser, &mut read)?;
         // A block keeps its `/` in the output unless the switches are known.
         let is_left_out = match self.options.skip {
@@ -419,7 +421,7 @@ const CONTROL_WORDS: [&str; 13] = [
 ];
 
 /// Where an operation of a calculation writes to.
-fn result_of(op: &mut Op) -> Option<&mut u16> {
+pub(super) fn result_of(op: &mut Op) -> Option<&mut u16> {
     match op {
         Op::Arithmetic { to, .. }
         | Op::Bits { to, .. }

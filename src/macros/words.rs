@@ -136,6 +136,13 @@ impl Reader<'_> {
         };
         if let Some(at) = of(b'G', &[650, 660]) {
             read.acts = true;
+            // A call is a macro statement: ROUND makes whole numbers there as in an assignment. Unverified: the manuals speak
+            // of "NC statement addresses" only.
+            for op in &mut parser.code.ops[read.first as usize..] {
+                if let Op::Round { letter, .. } = op {
+                    *letter = 0;
+                }
+            }
             return self.macro_call(parser, &read.words, at);
         }
         if let Some(at) = of(b'M', &[970, 980]) {
