@@ -16,6 +16,8 @@ pub mod rounding;
 
 pub mod formats;
 
+pub mod macros;
+
 pub mod compensation;
 
 pub mod cutting;

@@ -1,0 +1,15 @@
+//! Custom macro B: constructs against the manuals, whole programs, arbitrary text; its numbers by exact fractions and by
+//! series written out here.
+
+#[path = "macros/conformance.rs"]
+mod conformance;
+#[path = "macros/diagnostics.rs"]
+mod diagnostics;
+#[path = "macros/fuzz.rs"]
+mod fuzz;
+#[path = "macros/numbers.rs"]
+mod numbers;
+#[path = "macros/running.rs"]
+mod running;
+#[path = "macros/spelling.rs"]
+mod spelling;
