@@ -5,6 +5,8 @@
 mod conformance;
 #[path = "macros/diagnostics.rs"]
 mod diagnostics;
+#[path = "macros/expand.rs"]
+mod expand;
 #[path = "macros/fuzz.rs"]
 mod fuzz;
 #[path = "macros/numbers.rs"]

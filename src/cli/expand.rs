@@ -16,7 +16,7 @@ use clap::Args;
 use super::connection::{self, LineOptions};
 use super::failure::Failure;
 use super::feeding;
-use super::macros::{Lines, MacroOptions, MacroProgram, line_of, say_findings, text_of};
+use super::macros::{Forecast, Lines, MacroOptions, MacroProgram, line_of, say_findings, text_of};
 use crate::macros::expanded::{Expanded, Step};
 use crate::macros::number::Number;
 use crate::macros::starvation::Line;
@@ -62,6 +62,13 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         options.suppress,
     )?;
     drop(text);
+    if options.machine.is_none() {
+        say!("blocks are spelled as generic-iso has them, for want of a machine");
+    }
+    // What breaks is told when it is come to, behind all that is made before it.
+    if let Ok(Forecast { idle: Some(failure), .. }) = program.forecast(&options.input, line_of(&profile)) {
+        return Err(failure);
+    }
     // Without a machine nobody knows the line.
     let line = options.machine.as_ref().map(|_| line_of(&profile));
     match program.lines() {

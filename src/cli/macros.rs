@@ -16,7 +16,7 @@ use crate::formats::ReadError;
 use crate::macros::binary::Binary;
 use crate::macros::decimal::Decimal;
 use crate::macros::expanded::{Expanded, Step};
-use crate::macros::findings::{Finding, MacroError};
+use crate::macros::findings::{Finding, MacroError, NEVER_RUNS};
 use crate::macros::form::Form;
 use crate::macros::number::Number;
 use crate::macros::options::Skip;
@@ -98,8 +98,10 @@ impl MacroProgram {
 }
 
 /// What can be said of a program before it is fed, as far as it was run.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Forecast {
+    /// Why it is not worth running: it moves nothing.
+    pub(super) idle: Option<Failure>,
     /// Whether the line keeps up, in words, where it does not.
     pub(super) starvation: Option<String>,
     /// Its length, where the end was reached.
@@ -135,13 +137,22 @@ fn ahead<N: Number>(name: &str, mut lines: Expanded<N>) -> Result<Forecast, Fail
             }
         }
     }
-    say_findings(name, lines.findings());
-    if is_whole && size.blocks == 0 {
-        return Err(Failure::new(Exit::Program, format!("{name} makes no block"))
-            .help("look whether its loops run: `dripfeed expand` says why one does not"));
-    }
+    let idle = (is_whole && lines.moves() == 0).then(|| idle(name, lines.findings()));
     let starvation = lines.account().and_then(|account| account.text());
-    Ok(Forecast { starvation, size: is_whole.then_some(size) })
+    Ok(Forecast { idle, starvation, size: is_whole.then_some(size) })
+}
+
+/// A program that moves nothing; most likely for a loop that does not run.
+fn idle(name: &str, findings: &[Finding]) -> Failure {
+    match findings.iter().find(|finding| finding.error.code == NEVER_RUNS) {
+        Some(finding) => {
+            let mut shown = failure(name, finding.error.clone());
+            shown.prefix("the program moves nothing");
+            shown
+        }
+        None => Failure::new(Exit::Program, format!("{name} moves nothing"))
+            .help("it holds or makes no block with a coordinate"),
+    }
 }
 
 /// How much of a program is run before it is fed: a part of a second.

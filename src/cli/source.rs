@@ -241,6 +241,9 @@ impl Source {
     pub(super) fn forecast(&mut self, profile: &Profile, unpaced: bool) -> Result<(), Failure> {
         let Some(program) = self.macro_program() else { return Ok(()) };
         let forecast = program.forecast(&self.path, line_of(profile))?;
+        if let Some(failure) = forecast.idle {
+            return Err(failure);
+        }
         if let Some(words) = forecast.starvation.filter(|_| !unpaced) {
             say!("warning: {words}");
         }

@@ -1,15 +1,12 @@
 //! What is said while a program runs: with the values that are there.
 
 use super::code::{Comparison, Loop, Op};
-use super::findings::{At, Fault, Finding};
+use super::findings::{At, Fault, Finding, NEVER_RUNS};
 use super::number::Number;
 use super::program::Program;
 use super::run::Machine;
 use super::variables::{self, CONSTANTS, RESULTS};
 use crate::check::Severity;
-
-/// The code of a loop that does not run.
-pub(super) const NEVER_RUNS: &str = "loop-never-runs";
 
 impl<N: Number> Machine<N> {
     /// An undefined variable in a calculation: it counts as 0 (Fanuc B-63684EN, 16.1; Mitsubishi M700V, 13.5), and is

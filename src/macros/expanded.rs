@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::block::{Block, Turn};
 use super::findings::Finding;
+use super::form::AmountOf;
 use super::number::Number;
 use super::printer::{Printed, Printer, Unspellable};
 use super::program::Program;
@@ -21,6 +22,8 @@ pub struct Expanded<N> {
     printer: Printer,
     block: Block<N>,
     blocks: u64,
+    /// Blocks spelled that hold a length or an angle.
+    moves: u64,
     starvation: Option<Starvation>,
     /// Whether blocks that are run over must be spelled, for those behind them to be spelled right.
     spells_all: bool,
@@ -45,7 +48,15 @@ impl<N: Number> Expanded<N> {
     pub fn new(program: Arc<Program>, printer: Printer) -> Self {
         let spells_all = printer.looks_back() || program.texts().any(may_be_in_inches);
         let expansion = Expansion::new(program);
-        Self { expansion, printer, block: Block::default(), blocks: 0, starvation: None, spells_all }
+        Self {
+            expansion,
+            printer,
+            block: Block::default(),
+            blocks: 0,
+            moves: 0,
+            starvation: None,
+            spells_all,
+        }
     }
 
     /// Works out whether a line keeps up, from here on.
@@ -77,6 +88,9 @@ impl<N: Number> Expanded<N> {
                 Printed::Remark => return Ok(Step::Remark),
                 Printed::Block => {
                     self.blocks += 1;
+                    let form = self.printer.form();
+                    let is_move = self.block.words.iter().any(|w| form.amount(w.letter) == AmountOf::Length);
+                    self.moves += u64::from(is_move);
                     if let Some(starvation) = &mut self.starvation {
                         let characters = text.len() - start;
                         starvation.see(self.printer.form(), &self.block, self.blocks, characters);
@@ -119,6 +133,12 @@ impl<N: Number> Expanded<N> {
     #[must_use]
     pub fn blocks(&self) -> u64 {
         self.blocks
+    }
+
+    /// Blocks spelled so far that hold a length or an angle: those that move something.
+    #[must_use]
+    pub fn moves(&self) -> u64 {
+        self.moves
     }
 
     /// The line of the source that made the last one: its number, its text, and the program it stands in where that was

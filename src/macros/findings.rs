@@ -48,6 +48,9 @@ pub struct Finding {
     pub error: MacroError,
 }
 
+/// The code of a loop that does not run.
+pub const NEVER_RUNS: &str = "loop-never-runs";
+
 /// A stretch of one of a program's texts, in numbers alone.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub(super) struct At {

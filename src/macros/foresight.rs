@@ -6,7 +6,7 @@
 //! budget.
 
 use super::code::{Comparison, Loop, Op, Sign};
-use super::diagnosis::{NEVER_RUNS, condition};
+use super::diagnosis::condition;
 use super::findings::Fault;
 use super::number::{Bits, Number, Rounding};
 use super::program::Program;

@@ -538,7 +538,7 @@ impl<N: Number> Machine<N> {
     fn note_loops(&mut self, program: &Program) {
         let turned = &self.turned;
         self.findings.retain(|finding| {
-            finding.error.code != super::diagnosis::NEVER_RUNS
+            finding.error.code != super::findings::NEVER_RUNS
                 || !program
                     .code
                     .loops
