@@ -7,7 +7,7 @@
 
 use super::code::{Comparison, Loop, Op, Sign};
 use super::diagnosis::condition;
-use super::findings::Fault;
+use super::findings::{Fault, NEVER_RUNS};
 use super::number::{Bits, Number, Rounding};
 use super::program::Program;
 use super::variables::{CONSTANTS, FRAME, RESULTS, is_variable, name_of};

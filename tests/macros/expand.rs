@@ -66,7 +66,7 @@ fn the_papers_corners_are_cut_to_their_ends() {
             let exact_x = 20.0 + along;
             let exact_y = 20.0 + (radius * radius - along * along).max(0.0).sqrt();
             let exact_z = (40_000.0 - exact_x * exact_x).sqrt();
-            let exact = [f64::from(sx) * exact_x, f64::from(sy) * exact_y, exact_z];
+            let exact = [sx as f64 * exact_x, sy as f64 * exact_y, exact_z];
             for (made, exact) in [x, y, z].into_iter().zip(exact) {
                 assert!(
                     (*made as f64 - 1000.0 * exact).abs() <= 0.5 + 1e-6,
