@@ -146,10 +146,18 @@ impl<N: Number> Machine<N> {
         let left = program.options.budget.saturating_sub(self.idle);
         let given = u64::from(*fuel).min(left) as u32;
         let mut rest = given;
-        let turn = self.run(program, &mut rest, out);
+        let (turn, made) = match out {
+            Some(out) => {
+                let turn = self.run(program, &mut rest, Some(&mut *out));
+                (turn, !out.words.is_empty())
+            }
+            None => (self.run(program, &mut rest, None), true),
+        };
         *fuel -= given - rest;
         match turn {
-            Ok(Turn::Block) => self.idle = 0,
+            Ok(Turn::Block) if made => self.idle = 0,
+            // A remark moves nothing.
+            Ok(Turn::Block) => self.idle += u64::from(given - rest),
             Ok(Turn::Working) => {
                 self.idle += u64::from(given);
                 if self.idle >= program.options.budget {
