@@ -1,4 +1,5 @@
-//! Custom macro B: constructs against the manuals, whole programs, arbitrary text.
+//! Custom macro B: constructs against the manuals, whole programs, arbitrary text; its numbers by exact fractions and by
+//! series written out here.
 
 #[path = "macros/conformance.rs"]
 mod conformance;
@@ -6,6 +7,8 @@ mod conformance;
 mod diagnostics;
 #[path = "macros/fuzz.rs"]
 mod fuzz;
+#[path = "macros/numbers.rs"]
+mod numbers;
 #[path = "macros/running.rs"]
 mod running;
 #[path = "macros/spelling.rs"]
