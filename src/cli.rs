@@ -18,12 +18,14 @@ mod convert;
 mod demo;
 mod dialects;
 mod drawing;
+mod expand;
 mod failure;
 mod feeding;
 mod generate;
 mod jobs;
 mod kind;
 mod machines;
+mod macros;
 mod motions;
 mod output;
 mod plan;
@@ -56,6 +58,7 @@ enum Command {
     #[cfg(feature = "demo")]
     Demo(demo::Options),
     Generate(generate::Options),
+    Expand(expand::Options),
     Convert(Box<convert::Options>),
     Check(check::Options),
     Plot(plot::Options),
@@ -82,6 +85,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "demo")]
         Command::Demo(options) => demo::run(&options),
         Command::Generate(options) => generate::run(options),
+        Command::Expand(options) => expand::run(&options),
         Command::Convert(options) => convert::run(&options),
         Command::Check(options) => check::run(&options),
         Command::Plot(options) => plot::run(&options),

@@ -4,6 +4,7 @@
 //!  text ── words, statements ── Program ── Expansion ── Block ── Printer ── bytes
 //!                                (parsed,    (runs with    (words with
 //!                                 checked)    fuel)         values)
+//!                                └───────────────── Expanded ─────────────────┘
 //! ```
 //!
 //! A program is parsed whole (a macro is small, what it makes is not) and run a block at a time: memory does not grow
@@ -14,11 +15,15 @@
 pub mod binary;
 pub mod block;
 pub mod decimal;
+pub mod expanded;
 pub mod findings;
+pub mod form;
 pub mod number;
 pub mod options;
+pub mod printer;
 pub mod program;
 pub mod run;
+pub mod starvation;
 
 mod arguments;
 mod calls;
@@ -29,6 +34,7 @@ mod foresight;
 mod line;
 mod modal;
 mod statement;
+mod suppress;
 mod survey;
 mod variables;
 mod words;

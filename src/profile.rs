@@ -3,10 +3,15 @@
 //! A profile file states what differs from `generic-iso`; what it leaves out is taken from there and named. Unknown keys,
 //! values out of range and pairs that cannot go together are errors with their place.
 
+mod gcode;
+
+pub use gcode::Arithmetic;
+
 use std::time::Duration;
 
 use crate::check::Travel;
 use crate::keys::{Document, KeyError, Section};
+use crate::macros::form::Form;
 use crate::protocol::pacing::{Pace, WINDOW_MAX};
 use crate::tape::{Code, Tape};
 
@@ -43,6 +48,12 @@ pub struct Profile {
     pub buffer_bytes: u64,
     /// The dialect of G-code the control speaks, where the profile says: a built-in one or a file.
     pub dialect: Option<String>,
+    /// How blocks made of macro programs are spelled.
+    pub form: Form,
+    /// How macro programs are read and run.
+    pub macros: crate::macros::options::Options,
+    /// What they count with.
+    pub arithmetic: Arithmetic,
     /// How far the machine travels, where the profile says.
     pub travel: Travel,
     /// The most the machine tilts its wire, degrees, where the profile says.
@@ -144,6 +155,9 @@ impl Profile {
             },
             buffer_bytes: 0,
             dialect: None,
+            form: Form::default(),
+            macros: crate::macros::options::Options::default(),
+            arithmetic: Arithmetic::default(),
             travel: Travel::default(),
             taper_max_degrees: None,
         };
@@ -180,6 +194,7 @@ impl Profile {
             });
         };
         let number = !value.is_empty() && value.chars().all(|c| c.is_ascii_digit() || c == '.' || c == '-');
+        let number = number || matches!(value, "true" | "false");
         let quoted = if number || value.starts_with('"') { value.to_owned() } else { format!("{value:?}") };
         self.apply(&format!("[{section}]\n{name} = {quoted}\n")).map(|_| ())
     }
@@ -187,9 +202,10 @@ impl Profile {
     /// Takes over every key the text gives; returns those it does not.
     fn apply(&mut self, text: &str) -> Result<Vec<&'static str>, KeyError> {
         let document = Document::parse(text)?;
-        let sections =
-            document.sections(["machine", "link", "protocol", "tape", "control", "travel", "taper"])?;
-        let [machine, link, protocol, tape, control, travel, taper] = &sections;
+        let sections = document.sections([
+            "machine", "link", "protocol", "tape", "control", "gcode", "macros", "travel", "taper",
+        ])?;
+        let [machine, link, protocol, tape, control, gcode, macros, travel, taper] = &sections;
         let mut assumed = Vec::new();
         let mut given = |key: &'static str, is_given: bool| {
             if !is_given {
@@ -255,6 +271,10 @@ impl Profile {
         let buffer = control.whole("buffer_bytes", 0..=1 << 30)?;
         given("buffer_bytes", buffer.is_some());
         self.buffer_bytes = buffer.unwrap_or(self.buffer_bytes);
+
+        gcode::form(&mut self.form, gcode, &mut given)?;
+        let arithmetic = gcode::macros(&mut self.macros, &mut self.form, macros, &mut given)?;
+        self.arithmetic = arithmetic.unwrap_or(self.arithmetic);
 
         self.dialect = control.text("dialect")?.map(str::to_owned).or(self.dialect.take());
         // What a profile does not say of the machine itself is not assumed: it is then not checked.
@@ -323,7 +343,7 @@ fn within(section: &Section<'_>, key: &'static str, most: f64) -> Result<Option<
 }
 
 /// Every key of a profile with its section.
-const KEYS: [(&str, &str); 18] = [
+const KEYS: [(&str, &str); 33] = [
     ("machine", "name"),
     ("link", "baud"),
     ("link", "framing"),
@@ -339,6 +359,21 @@ const KEYS: [(&str, &str); 18] = [
     ("tape", "trailer"),
     ("control", "buffer_bytes"),
     ("control", "dialect"),
+    ("gcode", "decimals"),
+    ("gcode", "decimals_inch"),
+    ("gcode", "point"),
+    ("gcode", "trailing_zeros"),
+    ("gcode", "leading_zero"),
+    ("gcode", "blanks"),
+    ("gcode", "comments"),
+    ("gcode", "n_numbers"),
+    ("gcode", "n_step"),
+    ("gcode", "n_last"),
+    ("gcode", "line_max"),
+    ("macros", "numbers"),
+    ("macros", "control"),
+    ("macros", "without_point"),
+    ("macros", "semicolon"),
     ("travel", "x_mm"),
     ("travel", "y_mm"),
     ("taper", "max_degrees"),
@@ -347,6 +382,7 @@ const KEYS: [(&str, &str); 18] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::macros::form::Numbering;
 
     #[test]
     fn the_generic_profile_states_every_key() {
@@ -398,6 +434,13 @@ mod tests {
         profile.set("framing", "7E1").unwrap();
         profile.set("leader", "\"\"").unwrap();
         assert_eq!((profile.framing.stop_bits, profile.tape.leader.as_str()), (1, ""));
+        profile.set("n_numbers", "count").unwrap();
+        profile.set("n_step", "5").unwrap();
+        profile.set("comments", "false").unwrap();
+        assert_eq!(profile.form.numbers, Numbering::Count { step: 5, last: 9999 });
+        assert!(!profile.form.remarks);
+        assert!(Profile::generic_iso().unwrap().set("n_step", "5").is_err(), "nothing is counted");
+        assert!(profile.set("n_last", "4").is_err(), "below the step");
         assert!(profile.set("bawd", "1").unwrap_err().help.unwrap().contains("baud"));
         assert!(profile.set("tape.baud", "1").is_err());
     }

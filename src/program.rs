@@ -3,6 +3,7 @@
 //! A part is generated, a program is read; neither is ever held. A program is pulled once; to send it again it is made
 //! again, and [`Segments`] tells whether it is still the same.
 
+mod expanded;
 pub mod verbatim;
 pub mod written;
 

@@ -71,8 +71,12 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         None => Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error))?,
     };
     // Wrong arcs are judged here, and so is what stands behind them.
-    let reading =
-        Reading { of_machine: profile.dialect.clone(), keeps_wrong_arcs: true, ..options.reading.clone() };
+    let reading = Reading {
+        of_machine: profile.dialect.clone(),
+        keeps_wrong_arcs: true,
+        profile: Some(profile.clone()),
+        ..options.reading.clone()
+    };
     let mut motions = Motions::open(&options.input, &reading, OfPart::Blocks, Model::Rotated)?;
     let report = check(&mut motions, options, profile)?;
     if options.json {
@@ -97,7 +101,7 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
     let mut check = Check::new(Settings {
         format: match motions.kind {
             Kind::FourB => Format::FourB,
-            Kind::Gcode => Format::GCode,
+            Kind::Gcode | Kind::Macro => Format::GCode,
             Kind::ThreeB | Kind::Dxf | Kind::Part => Format::ThreeB,
         },
         travel: profile.travel,

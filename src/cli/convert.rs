@@ -217,7 +217,7 @@ impl Options {
         };
         let by_input = || match Kind::asked(&self.input, self.reading.from) {
             Ok(Kind::ThreeB) => Some(To::ThreeB),
-            Ok(Kind::Gcode) => Some(To::Gcode),
+            Ok(Kind::Gcode | Kind::Macro) => Some(To::Gcode),
             Ok(Kind::Dxf) => Some(To::Dxf),
             Ok(Kind::FourB) => Some(To::FourB),
             Ok(Kind::Part) | Err(_) => None,

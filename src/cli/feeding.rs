@@ -120,7 +120,9 @@ impl Feeding<'_> {
             tape,
             from_block: self.from_block,
             journal: self.journal,
-            one_by_one: self.line.pace.character.is_some() || self.source.is_stream(),
+            one_by_one: self.line.pace.character.is_some()
+                || self.source.is_stream()
+                || self.source.macro_program().is_some(),
         };
         let mut screen = Screen::new(total, self.line.pace.character);
         let link = &mut self.link;

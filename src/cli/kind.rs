@@ -8,6 +8,7 @@ use clap::ValueEnum;
 
 use super::failure::{Exit, Failure};
 use super::source;
+use crate::formats::gcode::words;
 
 /// What a source is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
@@ -20,6 +21,8 @@ pub(super) enum Kind {
     FourB,
     /// A G-code program without macros
     Gcode,
+    /// A macro program, expanded as it is read
+    Macro,
     /// A drawing
     Dxf,
     /// A part file, generated on demand
@@ -28,13 +31,14 @@ pub(super) enum Kind {
 
 impl Kind {
     /// Every kind, in the order of their names on the command line.
-    const ALL: [Self; 5] = [Self::ThreeB, Self::FourB, Self::Gcode, Self::Dxf, Self::Part];
+    const ALL: [Self; 6] = [Self::ThreeB, Self::FourB, Self::Gcode, Self::Macro, Self::Dxf, Self::Part];
 
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::ThreeB => "3b",
             Self::FourB => "4b",
             Self::Gcode => "gcode",
+            Self::Macro => "macro",
             Self::Dxf => "dxf",
             Self::Part => "part",
         }
@@ -46,6 +50,7 @@ impl Kind {
             Self::ThreeB => "3B",
             Self::FourB => "4B",
             Self::Gcode => "G-code",
+            Self::Macro => "a macro program",
             Self::Dxf => "a drawing",
             Self::Part => "a part file",
         }
@@ -81,17 +86,40 @@ impl Kind {
         match suffix.as_deref() {
             Some("3b") => Some(Self::ThreeB),
             Some("4b") => Some(Self::FourB),
-            Some("nc" | "iso" | "ngc" | "gcode" | "cnc" | "tap" | "mpf" | "min" | "eia") => Some(Self::Gcode),
+            Some("nc" | "iso" | "ngc" | "gcode" | "cnc" | "tap" | "mpf" | "min" | "eia") => {
+                let has_macros =
+                    is_file && head_of(path, MACROS_WITHIN).is_some_and(|head| has_macros(&head));
+                Some(if has_macros { Self::Macro } else { Self::Gcode })
+            }
             Some("dxf") => Some(Self::Dxf),
             Some("toml") => Some(Self::Part),
             _ if !is_file => None,
-            _ => {
-                let mut head = [0; 4096];
-                let count = File::open(path).and_then(|mut file| file.read(&mut head)).ok()?;
-                of_content(&head[..count])
-            }
+            _ => of_content(&head_of(path, 4096)?),
         }
     }
+}
+
+/// A program of plain blocks is not searched for macros behind this; where it has one it is told when it is read.
+const MACROS_WITHIN: u64 = 1 << 20;
+
+/// How a file begins.
+fn head_of(path: &Path, bytes: u64) -> Option<Vec<u8>> {
+    let mut head = Vec::new();
+    File::open(path).and_then(|file| file.take(bytes).read_to_end(&mut head)).ok()?;
+    Some(head)
+}
+
+/// Whether a line of a text is one of macro programs.
+fn has_macros(text: &[u8]) -> bool {
+    let mut words = Vec::new();
+    text.split(|&b| b == b'\n' || b == b'\r').any(|line| {
+        words::cut(line, &mut words).is_ok()
+            && words.iter().any(|word| match (word.kind, word.letter, word.whole()) {
+                (words::Kind::Macro, ..) => true,
+                (words::Kind::Word, b'G', Some(65..=67)) | (words::Kind::Word, b'M', Some(97)) => true,
+                _ => false,
+            })
+    })
 }
 
 /// What the first lines of a text look like.
@@ -108,12 +136,21 @@ fn of_content(head: &[u8]) -> Option<Kind> {
     if significant.next() == Some(b"0") && significant.next() == Some(b"SECTION") {
         return Some(Kind::Dxf);
     }
-    // The first line that is a block of either grammar decides.
-    lines.find_map(|line| match blocks_in(line) {
+    // The first line that is a block of either grammar decides; for G-code, whether macros follow.
+    let kind = lines.find_map(|line| match blocks_in(line) {
         Some(letters) if letters >= 4 => Some(Kind::FourB),
         Some(_) => Some(Kind::ThreeB),
-        None => is_gcode(line).then_some(Kind::Gcode),
-    })
+        None => (is_gcode(line) || line.starts_with(b"#")).then_some(Kind::Gcode),
+    });
+    match kind {
+        Some(Kind::Gcode) if has_macros(head) => Some(Kind::Macro),
+        Some(Kind::Gcode)
+            if !head.split(|&b| b == b'\n' || b == b'\r').any(|line| is_gcode(line.trim_ascii())) =>
+        {
+            None
+        }
+        other => other,
+    }
 }
 
 /// How many B words begin the first block in a line, if it holds a 3B or 4B block.
@@ -155,6 +192,10 @@ mod tests {
             ("%\nbbb9900gxl1b0", Some(Kind::ThreeB)),
             ("B5000B0B5000B2000DDGXNR1\n", Some(Kind::FourB)),
             ("%\nO0001 (PUNCH)\nG92 X0 Y0\n", Some(Kind::Gcode)),
+            ("%\nO0001\n#101=25\nWHILE[#101GT20]DO1\n", Some(Kind::Macro)),
+            ("#110=0.02 (INCREMENT)\n", Some(Kind::Macro)),
+            ("# a list of things\n", None),
+            ("G90 (SEE #5)\nG01 X1. Y2.\n", Some(Kind::Gcode)),
             ("(PUNCH)\n/N10 G90 G1X1.\n", Some(Kind::Gcode)),
             ("  0\r\nSECTION\r\n  2\r\nHEADER\r\n", Some(Kind::Dxf)),
             ("# a part\n[part]\nkind = \"gear\"\n", Some(Kind::Part)),

@@ -6,7 +6,7 @@
 //! call what stands behind its end; else block by block as it comes.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek as _, SeekFrom, Write as _};
+use std::io::{self, BufReader, BufWriter, Read, Seek as _, SeekFrom, Write as _};
 use std::path::Path;
 
 use clap::Args;
@@ -15,6 +15,7 @@ use super::dialects;
 use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
+use super::macros::{self, MacroOptions, MacroProgram};
 use super::source;
 use crate::drawing::dxf::Drawing;
 use crate::formats::ReadError;
@@ -23,9 +24,11 @@ use crate::formats::lines::Line;
 use crate::formats::three_b::{self, Block};
 use crate::geometry::Point;
 use crate::interpolator::Model;
+use crate::macros::form::Point as Points;
 use crate::motion::{Act, Motion};
 use crate::part::{Part, Prepared};
 use crate::place::{Place, Spot};
+use crate::profile::Profile;
 use crate::program::{Generated, Program};
 
 /// How IN is to be read.
@@ -43,6 +46,11 @@ pub(super) struct Reading {
     /// Whether arcs whose radii disagree are read as they are.
     #[arg(skip)]
     pub(super) keeps_wrong_arcs: bool,
+    #[command(flatten)]
+    pub(super) macros: MacroOptions,
+    /// How a macro program is run and what it makes is spelled, where a machine is known.
+    #[arg(skip)]
+    pub(super) profile: Option<Profile>,
     #[command(flatten)]
     pub(super) drawing: drawing::OfDrawing,
     /// Where the wire enters a drawing.
@@ -128,7 +136,12 @@ impl Motions {
         of_part: OfPart,
         model: Model,
     ) -> Result<Self, Failure> {
-        let kind = Kind::asked(word, reading.from)?;
+        let asked = Kind::asked(word, reading.from)?;
+        // What a macro program makes is read as what it is.
+        let kind = if asked == Kind::Macro { Kind::Gcode } else { asked };
+        if asked != Kind::Macro {
+            reading.macros.check_unused(word, asked)?;
+        }
         if reading.dialect.is_some() && kind != Kind::Gcode {
             let message = format!("--dialect goes with G-code, and {word} is {}", kind.title());
             return Err(Failure::new(Exit::Usage, message).help("leave it out, or say --from gcode"));
@@ -159,7 +172,7 @@ impl Motions {
                 drawn = Some(drawing);
                 Source::Made(Box::new(motions.into_iter()))
             }
-            Kind::ThreeB | Kind::FourB | Kind::Gcode => {
+            Kind::ThreeB | Kind::FourB | Kind::Gcode | Kind::Macro => {
                 let failed = |error: io::Error| source::unreadable(word, &error);
                 let is_file = word != "-" && Path::new(word).is_file();
                 if !is_file && reading.as_they_come && kind != Kind::Gcode {
@@ -178,7 +191,11 @@ impl Motions {
                         drawn,
                     });
                 }
-                let opened = if is_file { File::open(word) } else { put_aside(word) }.map_err(failed)?;
+                let opened = match (asked, is_file) {
+                    (Kind::Macro, _) => expanded(word, reading)?,
+                    (_, true) => File::open(word).map_err(failed)?,
+                    (_, false) => put_aside(word).map_err(failed)?,
+                };
                 let text = opened.try_clone().map_err(failed)?;
                 file = Some(opened);
                 let text = BufReader::with_capacity(BUFFER, text);
@@ -199,7 +216,11 @@ impl Motions {
                 }
             }
         };
-        Ok(Self { kind, places: Places { name: name_of(word), kind, file }, source, part, drawn })
+        let name = match asked {
+            Kind::Macro => format!("{}, expanded", name_of(word)),
+            _ => name_of(word),
+        };
+        Ok(Self { kind, places: Places { name, kind, file }, source, part, drawn })
     }
 
     /// The 3B block the last motion came from.
@@ -401,6 +422,41 @@ fn aside() -> io::Result<File> {
     let _ = std::fs::remove_file(&path);
     Ok(file)
 }
+
+/// What a macro program makes, in a file without a name: it is read more than once, and places in it are shown.
+fn expanded(word: &str, reading: &Reading) -> Result<File, Failure> {
+    let generic = || Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error));
+    let mut profile = reading.profile.clone().map_or_else(generic, Ok)?;
+    // Here it is a reader who must not mistake a length, and not the machine.
+    profile.form.point = Points::Always;
+    let text = macros::text_of(word)?;
+    let program = MacroProgram::parse(word, &text, &reading.macros, &profile, reading.dialect(), false)?;
+    let failed = |error: io::Error| Failure::new(Exit::Ours, format!("{word} cannot be expanded: {error}"));
+    let mut file = BufWriter::with_capacity(BUFFER, aside().map_err(failed)?);
+    let (mut line, mut bytes) = (Vec::new(), 0u64);
+    let mut lines = program.lines().into_program();
+    loop {
+        line.clear();
+        match lines.pull(&mut line).map_err(|error| Failure::program(word, error))? {
+            Some(_) => line.push(b'\n'),
+            None => break,
+        }
+        bytes += line.len() as u64;
+        if bytes > EXPANDED_BYTES_MAX {
+            let message = format!("{word} expands to more than {} GiB", EXPANDED_BYTES_MAX >> 30);
+            return Err(Failure::new(Exit::Program, message).help(
+                "`dripfeed expand` and `dripfeed send` make any length; look at a part of it with `| head`",
+            ));
+        }
+        file.write_all(&line).map_err(failed)?;
+    }
+    let mut file = file.into_inner().map_err(|error| failed(error.into_error()))?;
+    file.rewind().map_err(failed)?;
+    Ok(file)
+}
+
+/// The most that is put aside of a macro program.
+const EXPANDED_BYTES_MAX: u64 = 1 << 30;
 
 /// Copies what can be read only once into a file without a name.
 fn put_aside(word: &str) -> io::Result<File> {

@@ -20,9 +20,10 @@ use super::failure::{Exit, Failure};
 use super::feeding::{self, Feeding, StopFlags};
 use super::jobs;
 use super::kind::Kind;
+use super::macros::MacroOptions;
 use super::question;
 use super::send::quoted;
-use super::source::Source;
+use super::source::{MacroSource, Source};
 use super::spot;
 use crate::journal::Record;
 use crate::journal::history::History;
@@ -75,7 +76,12 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         )
         .help("name the program with --source FILE"));
     }
-    let source = Source::open(word, Kind::named(&job.kind), None)?;
+    let as_macro = MacroSource {
+        options: &MacroOptions::default(),
+        machine: Some(&job.machine),
+        line: &LineOptions::default().or(&job.settings),
+    };
+    let source = Source::open(word, Kind::named(&job.kind), None, &as_macro)?;
     // What a broken off job of these kinds would be taken up with is never the first block.
     source.check_from_block(u64::MAX)?;
     if source.is_stream() {

@@ -20,8 +20,9 @@ use super::feeding::{self, Feeding, StopFlags};
 use super::jobs;
 use super::kind::Kind;
 use super::machines;
+use super::macros::MacroOptions;
 use super::question;
-use super::source::Source;
+use super::source::{MacroSource, Source};
 use super::spot;
 use crate::journal::Job;
 use crate::journal::writer::{self, Writer};
@@ -31,7 +32,7 @@ use crate::part::Warning;
 /// Feed a program to a control, block by block, as it asks
 #[derive(Args, Debug)]
 pub(super) struct Options {
-    /// A 3B, 4B or G-code program, a part file (.toml), or - for standard input
+    /// A 3B, 4B, G-code or macro program, a part file (.toml), or - for standard input
     source: String,
     /// A serial device, or tcp://host:port
     #[arg(long, value_name = "PORT", required_unless_present = "dry_run", value_parser = Port::parse)]
@@ -61,6 +62,8 @@ pub(super) struct Options {
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
     #[command(flatten)]
+    macros: MacroOptions,
+    #[command(flatten)]
     line: LineOptions,
 }
 
@@ -69,9 +72,11 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         Ok(options.machine.as_deref().map(machines::load).transpose()?.and_then(|m| m.profile.dialect))
     };
     let dialect = options.dialect.clone().map_or_else(of_machine, |named| Ok(Some(named)))?;
-    let source = Source::open(&options.source, options.from, dialect.as_deref())?;
-    let warnings = source.prepared().map_or(&[][..], |prepared| prepared.warnings());
-    for warning in warnings {
+    let as_macro =
+        MacroSource { options: &options.macros, machine: options.machine.as_deref(), line: &options.line };
+    let mut source = Source::open(&options.source, options.from, dialect.as_deref(), &as_macro)?;
+    let warnings = source.prepared().map_or_else(Vec::new, |prepared| prepared.warnings().to_vec());
+    for warning in &warnings {
         say!("warning: {warning}");
     }
     let from_block = options.from_block.unwrap_or(1);
@@ -84,6 +89,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     }
     let machine = options.machine.or_else(|| source.prepared().and_then(|p| p.part().machine.clone()));
     let profile = connection::profile(machine.as_deref(), &options.line)?;
+    source.forecast(&profile, options.line.unpaced)?;
     let Some(port) = options.port else {
         return Err(Failure::new(Exit::Usage, "where to send is not said; name it with --port"));
     };

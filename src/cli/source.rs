@@ -10,15 +10,18 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
+use super::connection::{self, LineOptions};
 use super::dialects;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
+use super::macros::{MacroOptions, MacroProgram, line_of};
 use crate::formats::gcode::{Dialect, Library, Motions};
 use crate::journal::history::History;
 use crate::journal::resume;
 use crate::motion::{Act, Motion};
 use crate::part::file::PartFile;
 use crate::part::{Format, Prepared};
+use crate::profile::Profile;
 use crate::program::verbatim::{FourB, Gcode};
 use crate::program::{self, Counted, Line, Program, Segment, Segments};
 
@@ -37,6 +40,14 @@ pub(super) struct Source {
     body: Body,
 }
 
+/// How a macro program is read, where the source is one.
+pub(super) struct MacroSource<'a> {
+    pub(super) options: &'a MacroOptions,
+    /// Whose profile says how blocks are spelled.
+    pub(super) machine: Option<&'a str>,
+    pub(super) line: &'a LineOptions,
+}
+
 /// The length of a program.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Size {
@@ -50,6 +61,7 @@ pub(super) struct Size {
 #[derive(Debug)]
 enum Body {
     Part(Box<Prepared>),
+    Macro(MacroProgram),
     File(Stamp),
     Stream,
 }
@@ -87,8 +99,17 @@ impl Source {
     /// Opens and checks what a word on the command line stands for.
     ///
     /// G-code is read in a dialect; the generic one where none is named.
-    pub(super) fn open(word: &str, from: Option<Kind>, dialect: Option<&str>) -> Result<Self, Failure> {
+    pub(super) fn open(
+        word: &str,
+        from: Option<Kind>,
+        dialect: Option<&str>,
+        macros: &MacroSource<'_>,
+    ) -> Result<Self, Failure> {
         let kind = Kind::asked(word, from)?;
+        if kind == Kind::Macro {
+            return Self::of_macro(word, dialect, macros);
+        }
+        macros.options.check_unused(word, kind)?;
         let dialect = (kind == Kind::Gcode).then(|| dialects::load(dialect, "read")).transpose()?;
         if word == "-" {
             return if kind == Kind::Part {
@@ -116,6 +137,33 @@ impl Source {
             digest: String::new(),
             size: None,
             body: Body::Part(Box::new(prepared)),
+        }
+    }
+
+    /// A macro program, read whole.
+    fn of_macro(word: &str, dialect: Option<&str>, macros: &MacroSource<'_>) -> Result<Self, Failure> {
+        let profile = connection::resolve(macros.machine.unwrap_or("generic-iso"), macros.line)?.0;
+        let text = super::macros::text_of(word)?;
+        let program = MacroProgram::parse(word, &text, macros.options, &profile, dialect, false)?;
+        let path = match word {
+            "-" => word.to_owned(),
+            _ => std::path::absolute(word).map_err(|error| unreadable(word, &error))?.display().to_string(),
+        };
+        Ok(Self {
+            path,
+            kind: Kind::Macro,
+            dialect: None,
+            digest: blake3::hash(&text).to_hex().to_string(),
+            size: None,
+            body: Body::Macro(program),
+        })
+    }
+
+    /// The macro program, if it is one.
+    pub(super) fn macro_program(&self) -> Option<&MacroProgram> {
+        match &self.body {
+            Body::Macro(program) => Some(program),
+            Body::Part(_) | Body::File(_) | Body::Stream => None,
         }
     }
 
@@ -184,8 +232,20 @@ impl Source {
     pub(super) fn prepared(&self) -> Option<&Prepared> {
         match &self.body {
             Body::Part(prepared) => Some(prepared),
-            Body::File(_) | Body::Stream => None,
+            Body::Macro(_) | Body::File(_) | Body::Stream => None,
         }
+    }
+
+    /// Runs the beginning of a macro program: tells what was noticed and whether the line will keep up, and finds its
+    /// length where that is not far.
+    pub(super) fn forecast(&mut self, profile: &Profile, unpaced: bool) -> Result<(), Failure> {
+        let Some(program) = self.macro_program() else { return Ok(()) };
+        let forecast = program.forecast(&self.path, line_of(profile))?;
+        if let Some(words) = forecast.starvation.filter(|_| !unpaced) {
+            say!("warning: {words}");
+        }
+        self.size = forecast.size;
+        Ok(())
     }
 
     /// Whether the program can be made only once.
@@ -202,6 +262,7 @@ impl Source {
     pub(super) fn program(&self) -> Result<Box<dyn Program>, Failure> {
         Ok(match &self.body {
             Body::Part(prepared) => program::generated(prepared),
+            Body::Macro(program) => program.lines().into_program(),
             Body::File(stamp) => {
                 let verified =
                     Verified::open(stamp.clone()).map_err(|error| unreadable(&self.path, &error))?;
@@ -228,7 +289,7 @@ impl Source {
             Some(Format::ThreeB) | None => self.kind,
         };
         let in_force = match kind {
-            Kind::Gcode => "its modal state (units, distance mode, offset)",
+            Kind::Gcode | Kind::Macro => "its modal state (units, distance mode, offset)",
             Kind::FourB => "the offset it adds to the outline",
             Kind::ThreeB | Kind::Part | Kind::Dxf => return Ok(()),
         };
@@ -301,7 +362,7 @@ fn text_program(
             };
             Ok(Box::new(Gcode::new(text, dialect.clone(), library)))
         }
-        (Kind::Gcode | Kind::Dxf | Kind::Part, _) => {
+        (Kind::Gcode | Kind::Macro | Kind::Dxf | Kind::Part, _) => {
             let message = format!("{word} is a drawing: what is fed is a program made from it");
             Err(Failure::new(Exit::Usage, message)
                 .help("make one with `dripfeed convert`, look at it, and send that"))

@@ -205,6 +205,17 @@ impl Program {
         &self.files[file].text[range.0 as usize..range.1 as usize]
     }
 
+    /// Its texts: the main one, and those that were loaded.
+    pub fn texts(&self) -> impl Iterator<Item = &[u8]> {
+        self.files.iter().map(|file| &*file.text)
+    }
+
+    /// The whole text a block was made from, which the places in [`Block`](super::block::Block) are counted in.
+    #[must_use]
+    pub fn source_text(&self, source: u32) -> &[u8] {
+        &self.files[usize::from(self.lines[source as usize].file)].text
+    }
+
     /// The program a line stands in, where that was loaded from beside the main one.
     #[must_use]
     pub fn file_of(&self, source: u32) -> Option<u32> {
