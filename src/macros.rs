@@ -35,6 +35,7 @@ mod foresight;
 mod functions;
 mod line;
 mod linking;
+mod machine;
 mod making;
 mod modal;
 mod reader;

@@ -3,10 +3,10 @@
 use super::block::{Amount, Block, Word};
 use super::code::{Template, TemplateWord, Value};
 use super::findings::Fault;
+use super::machine::Machine;
 use super::modal::Effect;
 use super::number::Number;
 use super::program::Program;
-use super::run::Machine;
 
 impl<N: Number> Machine<N> {
     /// A block from its template; false where all its words are dropped.
