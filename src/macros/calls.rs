@@ -7,11 +7,11 @@
 
 use super::code::{Kind, Value};
 use super::findings::Fault;
+use super::machine::Machine;
 use super::modal::MODAL_CALLS;
 use super::number::Number;
 use super::options::{Pointless, decimals};
 use super::program::Program;
-use super::run::Machine;
 use super::variables::{FRAME, LOCALS};
 use crate::formats::gcode::numbers::Number as Written;
 

@@ -258,6 +258,10 @@ pub(super) struct Call {
     /// Where `program` is, when it is written and was found.
     pub entry: Option<u32>,
     pub count: Value,
+    /// Whether the count is written behind L.
+    pub has_count: bool,
+    /// Its operation.
+    pub pc: u32,
     /// Variables and what they are set to, with the letter.
     pub arguments: Vec<(u16, u8, Value)>,
     pub at: At,

@@ -2,9 +2,9 @@
 
 use super::code::{Comparison, Loop, Op};
 use super::findings::{At, Fault, Finding, NEVER_RUNS};
+use super::machine::Machine;
 use super::number::Number;
 use super::program::Program;
-use super::run::Machine;
 use super::variables::{self, CONSTANTS, RESULTS};
 use crate::check::Severity;
 

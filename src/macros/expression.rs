@@ -13,9 +13,9 @@
 use super::code::{Code, Comparison, Op, Sign};
 use super::findings::{At, Fault};
 use super::line::Line;
-use super::number::{Bits, Function, Rounding};
+use super::number::Bits;
 use super::options::{Control, Options};
-use super::variables::{self, RESULTS, Variable};
+use super::variables::RESULTS;
 
 /// Reads one line, writes operations.
 pub(super) struct Parser<'a> {
@@ -236,7 +236,7 @@ impl<'a> Parser<'a> {
     }
 
     /// An operation with a result.
-    fn push(&mut self, from: usize, op: impl FnOnce(u16) -> Op) -> Result<Term, Fault> {
+    pub(super) fn push(&mut self, from: usize, op: impl FnOnce(u16) -> Op) -> Result<Term, Fault> {
         let at = self.since(from);
         let to = self.result(at)?;
         self.code.push(op(to), at);
@@ -305,144 +305,6 @@ impl<'a> Parser<'a> {
         )
     }
 
-    fn function(&mut self) -> Result<Term, Fault> {
-        let from = self.at;
-        let length = self.line.bytes[from..].iter().take_while(|b| b.is_ascii_alphabetic()).count();
-        let name = String::from_utf8_lossy(&self.line.bytes[from..from + length]).into_owned();
-        // Fanuc reads the first two letters alone as well (B-63684EN, 16.3).
-        let known = FUNCTIONS.iter().find(|(n, _)| *n == name || name.len() == 2 && n.starts_with(&name));
-        let Some((name, named)) = known else {
-            return Err(Fault::syntax(
-                self.line.at(from, from + length),
-                format!("`{name}` is no function"),
-                "SIN COS TAN ASIN ACOS ATAN SQRT ABS ROUND FIX FUP LN EXP POW BIN BCD are",
-            ));
-        };
-        self.at += length;
-        self.expects(b'[', &format!("behind {name}"))?;
-        let first = self.argument()?;
-        let mut second = None;
-        if self.takes(b',') {
-            if !matches!(named, Named::ArcTangent | Named::Power) {
-                let at = self.line.at(self.at - 1, self.at);
-                return Err(Fault::syntax(at, format!("{name} takes one number"), "leave the second out"));
-            }
-            second = Some(self.argument()?);
-        }
-        self.expects(b']', &format!("to close {name}"))?;
-        let bytes = &self.line.bytes;
-        if *named == Named::ArcTangent && second.is_none() && bytes[self.at..].starts_with(b"/[") {
-            self.at += 2;
-            second = Some(self.argument()?);
-            self.expects(b']', "to close ATAN[…]/[…]")?;
-        }
-        if *named == Named::Power && second.is_none() {
-            return Err(Fault::syntax(self.since(from), "POW takes two numbers", "write POW[base,exponent]"));
-        }
-        let letter = self.letter;
-        let to_op = |to: u16| match (named, second) {
-            (Named::Power, Some(second)) => Op::Power { to, a: first, b: second },
-            (_, Some(second)) => Op::ArcTangent { to, a: first, b: second },
-            (Named::Plain(function), None) => Op::Function { function: *function, to, from: first },
-            (Named::Absolute, None) => Op::Absolute { to, from: first },
-            (Named::Round(rounding), None) => {
-                let letter = if *rounding == Rounding::Nearest { letter } else { 0 };
-                Op::Round { rounding: *rounding, letter, to, from: first }
-            }
-            (Named::ArcTangent | Named::Power, None) => {
-                Op::Function { function: Function::ArcTangent, to, from: first }
-            }
-        };
-        self.push(from, to_op)
-    }
-
-    fn argument(&mut self) -> Result<u16, Fault> {
-        let from = self.at;
-        let term = self.condition()?;
-        self.number(term, self.since(from))?;
-        Ok(term.cell)
-    }
-
-    /// A variable that is read: its cell.
-    pub(super) fn variable(&mut self) -> Result<u16, Fault> {
-        let from = self.at;
-        match self.place_of_variable()? {
-            Target::Cell(cell) => Ok(cell),
-            Target::Indirect(index) => {
-                self.code.reads_state = true;
-                Ok(self.push(from, |to| Op::Load { to, index })?.cell)
-            }
-            Target::Number(number) => match variables::variable(number) {
-                Variable::Group(_)
-                | Variable::Letter(_)
-                | Variable::Position(_)
-                | Variable::Date
-                | Variable::Time => {
-                    self.code.reads_state = true;
-                    Ok(self.push(from, |to| Op::System { to, number: number as u16 })?.cell)
-                }
-                other => Err(not_readable(number, other, self.since(from))),
-            },
-        }
-    }
-
-    /// `#1`, `#[…]` or `#<name>`, read or written.
-    pub(super) fn place_of_variable(&mut self) -> Result<Target, Fault> {
-        let from = self.at;
-        self.at += 1;
-        match self.peek() {
-            Some(b'[') => {
-                let letter = std::mem::replace(&mut self.letter, 0);
-                let index = self.bracket("behind #")?.cell;
-                self.letter = letter;
-                Ok(Target::Indirect(index))
-            }
-            Some(b'<') => {
-                self.at += 1;
-                let length = self.line.bytes[self.at..].iter().take_while(|b| is_of_name(**b)).count();
-                let name = self.text_of(length);
-                self.at += length;
-                if length == 0 || !self.takes(b'>') {
-                    return Err(Fault::syntax(
-                        self.since(from),
-                        "a name is letters, digits and underscores between < and >",
-                        "write #<depth>",
-                    ));
-                }
-                Ok(Target::Cell(self.code.named(&name, self.since(from))?))
-            }
-            Some(b'0'..=b'9') => {
-                let (digits, decimals) = self.digits()?;
-                if decimals > 0 || self.line.bytes[self.at - 1] == b'.' {
-                    return Err(Fault::syntax(
-                        self.since(from),
-                        "the number of a variable has no point",
-                        "leave the point out",
-                    ));
-                }
-                Ok(match variables::variable(digits) {
-                    Variable::Null => Target::Cell(0),
-                    Variable::Kept(cell) => Target::Cell(cell),
-                    _ => Target::Number(digits),
-                })
-            }
-            Some(b'#') => Err(Fault::syntax(
-                self.since(from),
-                "`##`: the number of a variable that stands in a variable needs brackets",
-                "write #[#1]",
-            )),
-            _ => Err(Fault::syntax(
-                self.since(from),
-                "`#` without the number of a variable",
-                "write #1, #[#1+1] or #<name>",
-            )),
-        }
-    }
-
-    fn text_of(&self, length: usize) -> String {
-        String::from_utf8_lossy(&self.line.bytes[self.at..self.at + length]).into_owned()
-    }
-
     /// A number as it is written, without sign: digits, and how many stand behind the point.
     pub(super) fn digits(&mut self) -> Result<(i64, u8), Fault> {
         let from = self.at;
@@ -489,70 +351,6 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// A variable as an assignment or an expression names it.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) enum Target {
-    Cell(u16),
-    /// Its number stands in a cell.
-    Indirect(u16),
-    /// One that is not kept in a cell.
-    Number(i64),
-}
-
-/// Why a variable cannot be read.
-pub(super) fn not_readable(number: i64, variable: Variable, at: At) -> Fault {
-    match variable {
-        Variable::Machine(what) => Fault::new(
-            "machine-variable",
-            at,
-            format!("#{number} is {what}: only the machine knows it"),
-            "set a variable to its value by hand, or run this program in the control",
-        ),
-        Variable::Alarm | Variable::Message => {
-            Fault::syntax(at, format!("#{number} is written, not read"), "write #3000=1(TEXT)")
-        }
-        _ => Fault::new(
-            "no-variable",
-            at,
-            format!("there is no variable #{number}"),
-            "there are #0 to #33, #100 to #199, #500 to #999, and system variables from #1000",
-        ),
-    }
-}
-
 fn is_of_number(byte: u8) -> bool {
     matches!(byte, b'0'..=b'9' | b'.')
 }
-
-fn is_of_name(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || byte == b'_'
-}
-
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Named {
-    Plain(Function),
-    Absolute,
-    Round(Rounding),
-    ArcTangent,
-    Power,
-}
-
-/// Longer names before those they begin with.
-const FUNCTIONS: [(&str, Named); 16] = [
-    ("SIN", Named::Plain(Function::Sine)),
-    ("COS", Named::Plain(Function::Cosine)),
-    ("TAN", Named::Plain(Function::Tangent)),
-    ("ASIN", Named::Plain(Function::ArcSine)),
-    ("ACOS", Named::Plain(Function::ArcCosine)),
-    ("ATAN", Named::ArcTangent),
-    ("SQRT", Named::Plain(Function::Root)),
-    ("ABS", Named::Absolute),
-    ("ROUND", Named::Round(Rounding::Nearest)),
-    ("FIX", Named::Round(Rounding::Down)),
-    ("FUP", Named::Round(Rounding::Up)),
-    ("LN", Named::Plain(Function::Logarithm)),
-    ("EXP", Named::Plain(Function::Exponential)),
-    ("POW", Named::Power),
-    ("BIN", Named::Plain(Function::FromBcd)),
-    ("BCD", Named::Plain(Function::ToBcd)),
-];

@@ -5,6 +5,8 @@
 //! Nothing is guessed: where a value depends on the way the program came, the loop is left to the run, and to its
 //! budget.
 
+use std::collections::BTreeSet;
+
 use super::code::{Comparison, Loop, Op, Sign};
 use super::diagnosis::condition;
 use super::findings::{Fault, NEVER_RUNS};
@@ -26,6 +28,8 @@ struct Walk<'p, N> {
     joins: Vec<(u32, u32, Vec<Known<N>>, bool)>,
     found: Vec<(Severity, Fault)>,
     has_modal: bool,
+    /// All N numbers, where jumps are computed.
+    labels: BTreeSet<u32>,
 }
 
 /// The loops of a program that never run or never end.
@@ -41,6 +45,10 @@ pub(super) fn loops<N: Number>(program: &Program) -> Vec<(Severity, Fault)> {
         is_reached: true,
         joins: Vec::new(),
         found: Vec::new(),
+        labels: match code.computed_jumps {
+            true => program.units.iter().flat_map(|unit| &unit.labels).map(|label| label.pc).collect(),
+            false => BTreeSet::new(),
+        },
         has_modal: code.ops.iter().any(|op| matches!(op, Op::SetModal { .. })),
     };
     for (n, unit) in program.units.iter().enumerate() {
@@ -67,12 +75,12 @@ impl<N: Number> Walk<'_, N> {
                 if self.is_reached {
                     self.forget_set(from, pc);
                 } else {
-                    (self.cells, self.is_reached) = (cells, was_reached);
+                    self.cells[..cells.len()].copy_from_slice(&cells);
+                    self.is_reached = was_reached;
                 }
             }
         }
-        let is_label = || self.program.unit_of(pc).labels.iter().any(|label| label.pc == pc);
-        if self.program.targets.contains(&pc) || code.computed_jumps && is_label() {
+        if self.program.targets.contains(&pc) || self.labels.contains(&pc) {
             self.forget_all();
             self.is_reached = true;
         }
@@ -82,7 +90,8 @@ impl<N: Number> Walk<'_, N> {
                 self.is_reached = false;
             }
             Op::JumpUnless { to, .. } | Op::JumpUnlessCompare { to, .. } => {
-                self.joins.push((to, pc + 1, self.cells.clone(), self.is_reached));
+                let cells = self.cells[..usize::from(CONSTANTS)].to_vec();
+                self.joins.push((to, pc + 1, cells, self.is_reached));
             }
             Op::Leave { id, .. } | Op::LeaveUnlessCompare { id, .. } => {
                 let around = code.loops[usize::from(id)];

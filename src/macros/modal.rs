@@ -8,9 +8,9 @@ use super::block::{Amount, Word};
 use super::calls::valued;
 use super::code::Template;
 use super::findings::{At, Fault};
+use super::making::is_axis;
 use super::number::Number;
 use super::options::{Options, decimals};
-use super::run::is_axis;
 use super::variables::Variable;
 use super::words::tenths;
 use crate::formats::gcode::numbers::Unit;
@@ -223,7 +223,7 @@ impl<N: Number> State<N> {
                     "give a fixed one".to_owned(),
                 ),
             },
-            other => Err(super::expression::not_readable(number, other, at)),
+            other => Err(super::references::not_readable(number, other, at)),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::code::{Call, Kind, Op, Template, TemplateWord, Value};
 use super::expression::Parser;
 use super::findings::{At, Fault};
 use super::options::Skip;
-use super::program::Reader;
+use super::reader::Reader;
 use super::statement::Statements;
 use crate::formats::gcode::numbers::Number as Written;
 
@@ -153,6 +153,8 @@ impl Reader<'_> {
             read.acts = true;
             return self.return_(parser, read, at);
         }
+        // Behind an end there is nothing; whether it is one is then for the switch to say.
+        read.acts |= of(b'M', &[20, 300]).is_some() && read.skip > 0;
         let cancel = of(b'G', &[670]).map(|at| read.words.remove(at).at);
         self.template(parser, read)?;
         if let Some(at) = cancel {
@@ -186,7 +188,7 @@ impl Reader<'_> {
         }
         let call = self.call(kind, call_at, program, count, arguments)?;
         let code = &mut *parser.code;
-        code.calls.push(call);
+        code.calls.push(Call { pc: code.next(), ..call });
         let call = code.calls.len() as u32 - 1;
         code.push(if kind == Kind::Macro { Op::Call { call } } else { Op::SetModal { call } }, call_at);
         Ok(())
@@ -216,7 +218,7 @@ impl Reader<'_> {
             parser.code.computed_jumps = true;
         }
         let code = &mut *parser.code;
-        code.calls.push(call);
+        code.calls.push(Call { pc: code.next(), ..call });
         let call = code.calls.len() as u32 - 1;
         code.push(Op::Call { call }, word.at);
         Ok(())
@@ -252,6 +254,8 @@ impl Reader<'_> {
             program: whole(program)?,
             entry: None,
             count: count_value,
+            has_count: count.is_some(),
+            pc: 0,
             arguments,
             at: At { end: program.at.end.max(at.end), ..at },
         })
@@ -271,7 +275,7 @@ impl Reader<'_> {
             Some(target) => Op::ReturnTo {
                 cell: match target.value {
                     Value::Written(number, _) if number.decimals == 0 && number.mantissa >= 0 => {
-                        self.returns.push((parser.code.next(), number.mantissa as u64, target.at));
+                        self.returns.insert(number.mantissa as u64);
                         parser.code.constant(number.mantissa, 0, target.at)?
                     }
                     Value::Written(..) => {

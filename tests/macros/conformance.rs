@@ -34,7 +34,17 @@ fn spellings() {
     assert_eq!(made("\u{feff}%\nO0001 (NAME)\nN010 G00 X1.\nM30\n%\n"), "(NAME); N10 G00 X1.; M30");
     assert_eq!(made("X1.\r\nX2.\rX3."), "X1.; X2.; X3.");
     // Several statements in a block: in the order they stand, the words behind them all.
-    assert_eq!(made("#1=1 #2=#1+1 G01 X#1 Y#2 #1=5\nZ#1\n"), "G01 X5 Y2; Z5");
+    assert_eq!(made("#1=1 #2=#1+1 G01 X#1 Y#2\nZ#1\n"), "G01 X1 Y2; Z1");
+    for (text, says) in [
+        ("X1. #1=5\n", "1:5: an assignment behind the words of a block"),
+        ("X1. GOTO5\nN5\n", "GOTO behind the words of a block"),
+        ("X1. IF[1EQ2]THEN#1=5\n", "IF behind the words of a block"),
+        ("IF[1EQ2]GOTO5 X1.\nN5\n", "words of a block behind a branch or a loop"),
+        ("DO1 X1.\nEND1\n", "words of a block behind a branch or a loop"),
+        ("IF[1EQ2]THEN#1=5 #2=6\n", "a second statement behind THEN"),
+    ] {
+        assert!(made(text).contains(says), "{text}: {}", made(text));
+    }
 }
 
 #[test]
@@ -359,6 +369,7 @@ fn m98_works_with_the_locals_of_its_caller() {
     // Fanuc: the last four digits are the program, those in front how often.
     assert_eq!(made("M98 P30007\nM30\nO7\nY1.\nM99\n"), "Y1.; Y1.; Y1.; M30");
     assert_eq!(made("M98 P30007\nM30\nO30007\nY1.\nM99\nO7\nY2.\nM99\n"), "Y1.; M30");
+    assert!(made("M98 P30007 L2\nM30\nO7\nM99\n").contains("there is no program O30007"));
     assert!(made("M98 P1 Q2\nM30\nO1\nM99\n").contains("Q in a call"));
 }
 
@@ -390,6 +401,28 @@ fn m97_calls_a_block_of_its_own_program() {
 }
 
 #[test]
+fn programs_of_the_haas_manual() {
+    // 96-8000, page 118: "The above macro could be used to initialize three sets of variables".
+    let array = "O0300 (Initialize an array of variables) ;\nN1 IF [#2 NE #0] GOTO2 (B=base variable) ;\n\
+                 #3000=1 (Base variable not given) ;\nN2 IF [#19 NE #0] GOTO3 (S=size of array);\n\
+                 #3000=2 (Size of array not given) ;\nN3 WHILE [#19 GT 0] DO1 ;\n#19=#19-1 (Decrement count) ;\n\
+                 #[#2+#19]=#22 (V=value to set array to) ;\nEND1 ;\nM99 ;\n";
+    let calls = "#101=9\n#120=9\nG65 P300 B101. S20 (INIT 101..120 TO #0) ;\nG65 P300 B501. S5 V1 (TO 1.0) ;\n\
+                 G65 P300 B550. S5 V0 (TO 0.0) ;\nX#101 Y#120 Z#501 A#505 B#506 C#554\nM30\n";
+    let remark = "(Initialize an array of variables)";
+    let expected = format!("{remark}; {remark}; {remark}; Z1 A1 C0; M30");
+    assert_eq!(made(&format!("{calls}{array}")), expected);
+    let missing = made(&format!("G65 P300 S5\nM30\n{array}"));
+    assert_eq!(missing, format!("{remark}; error 5:1: the program raises alarm 1: Base variable not given"));
+    // Page 217, M97 (shortened to two turns).
+    let local = "O00011 (M97 CALL)\nT1 M06\nG00 G90 G54 X0 Y0 S1000 M03\nM97 P1000 L2\nG00 G90 Z1.\nM30\n\
+                 N1000 G01 G91 Z-0.1\nG90 X2.\nM99\n";
+    let expected = "(M97 CALL); T1 M06; G00 G90 G54 X0 Y0 S1000 M03; N1000 G01 G91 Z-0.1; G90 X2.; \
+                    N1000 G01 G91 Z-0.1; G90 X2.; G00 G90 Z1.; M30";
+    assert_eq!(made(local), expected);
+}
+
+#[test]
 fn programs_from_beside() {
     let mut shelf = Shelf::default();
     shelf.0.insert(9100, b"%\nO9100\nX#1\nM98 P9101\nM99\n%\n".to_vec());
@@ -398,6 +431,8 @@ fn programs_from_beside() {
     assert_eq!(made("G65 P9100 A1.\nM30\n", &mut shelf), "X1; (no number); Y1.; M30");
     // A computed number: all of them are there.
     assert_eq!(made("#1=9101\nM98 P#1\nM30\n", &mut shelf), "(no number); Y1.; M30");
+    shelf.0.insert(9103, b"O9104\nM99\n".to_vec());
+    assert!(made("M98 P9103\nM30\n", &mut shelf).contains("the text of O9103 holds O9104"));
     shelf.0.insert(9102, b"X1.\nX#3001\nM99\n".to_vec());
     assert!(made("M98 P9102\nM30\n", &mut shelf).contains("error 2:2: in O9102: #3001 is a timer"));
 }
@@ -474,6 +509,7 @@ fn block_skip() {
     assert_eq!(made("/X1.\n/2 N5 X2.\nN6 /3 X3.\n"), "/1 X1.; /2 N5 X2.; /3 N6 X3.");
     assert!(made("/#1=1\n").contains("decided by a switch"));
     assert!(made("/M98 P1\nM30\nO1\nM99\n").contains("decided by a switch"));
+    assert!(made("/M30\nX1.\n").contains("decided by a switch"));
     // Known: left out, or made without.
     let text = "#1=1\n/#1=2\n/2 #1=#1+10\n/X1.\n/2 Y2.\nX#1\n";
     assert_eq!(with(|o| o.skip = Skip::Switches(0), text), "X1.; Y2.; X12");

@@ -115,6 +115,8 @@ fn a_budget_without_a_block_ends_a_loop_that_cannot_be_foreseen() {
     );
     assert!(says.ends_with("the loop runs while `#1` LT #2"), "{says}");
     assert!(made("N1 #1=#1+1\nGOTO1\n").contains("100000 steps without a block: the program goes round"));
+    // A remark is no block.
+    assert!(made("DO1\n(TURN)\nIF[#1EQ1]GOTO1\nEND1\nN1\n").ends_with("the loop DO1 does not end"));
     // Blocks count the budget anew.
     let long =
         made("#1=0\nWHILE[#1LT200]DO1\n#2=0\nWHILE[#2LT20000]DO2\n#2=#2+1\nEND2\nX#1\n#1=#1+1\nEND1\n");

@@ -73,7 +73,7 @@ pub(crate) fn run<N: Number>(program: Program) -> String {
                 return blocks.join("; ");
             }
         }
-        assert!(blocks.len() <= 100_000, "the test program does not end");
+        assert!(blocks.len() <= 200_000, "the test program does not end");
     }
 }
 
