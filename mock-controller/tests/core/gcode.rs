@@ -347,3 +347,12 @@ fn after_a_reset_the_programs_zero_is_where_it_was() {
     Sender::of("%\nG01 X2. Y1.\n%\n").window(4096).feed(&mut control, HOUR, 2 * HOUR);
     assert_eq!((control.blocks(), control.position_um(), control.alarm()), (2, [2000, 1000], None));
 }
+
+#[test]
+fn machine_words_like_a_pump_are_passed_over_and_counted() {
+    let (report, _) = watch(gcode(0.0), "%\nT84\nT86\nG01 X1.\nT85\nC777\nM02\n%\n");
+    assert_eq!((report.blocks, report.alarm), (1, None));
+    let counted: Vec<(&str, u64)> =
+        report.words_passed_over.iter().map(|(word, &count)| (word.as_str(), count)).collect();
+    assert_eq!(counted, [("C", 1), ("T", 3)]);
+}

@@ -8,6 +8,7 @@ mod device;
 mod faults;
 mod fields;
 mod process;
+mod protocols;
 mod pty;
 mod tcp;
 mod words;

@@ -49,6 +49,17 @@ fn a_program_line_by_line_with_the_end_of_the_manual() {
 }
 
 #[test]
+fn an_end_whose_eot_was_lost_is_one_after_a_while() {
+    let mut talk = opened();
+    talk.send(block(0x02, BLOCK.trim()));
+    talk.hears([ACK]);
+    talk.send([ETX]);
+    assert!(!talk.control.is_finished());
+    talk.wait(2000);
+    talk.is_done(1);
+}
+
+#[test]
 fn a_broken_block_comes_at_most_three_times_again() {
     let mut talk = opened();
     let good = block(0x02, BLOCK.trim());

@@ -5,6 +5,7 @@
 mod answer;
 mod codes;
 mod fanuc_a;
+mod faults;
 mod frames;
 mod grbl;
 mod heidenhain;

@@ -161,11 +161,19 @@ impl Machine for Heidenhain {
     }
 
     fn due(&self) -> Option<Duration> {
-        (self.is_open() && self.part != Part::Between).then_some(self.last + SILENCE)
+        let waits = (self.is_open() && self.part != Part::Between) || self.state == State::Ending;
+        waits.then_some(self.last + SILENCE)
     }
 
     fn time(&mut self, now: Duration, out: &mut Out) {
-        if self.due().is_some_and(|due| now >= due) {
+        if self.due().is_none_or(|due| now < due) {
+            return;
+        }
+        if self.state == State::Ending {
+            // ETX has said it; its EOT was lost.
+            out.ends = true;
+            self.state = State::Done;
+        } else {
             self.refuse(out);
         }
     }
