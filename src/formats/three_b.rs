@@ -335,6 +335,17 @@ mod tests {
     }
 
     #[test]
+    fn the_number_along_the_counting_axis_is_the_one_g_names() {
+        for (x, y, g, counted) in [(-579, 6617, Axis::Y, 6617), (9900, -1, Axis::X, 9900), (4, 4, Axis::Y, 4)]
+        {
+            let line = Block::line(Position::new(x, y));
+            assert_eq!((line.g, line.counted(), line.j), (g, Micrometres(counted), Micrometres(counted)));
+        }
+        let arc = Block::arc(Position::new(3, 4), Sense::Clockwise, Axis::X, Micrometres(90));
+        assert_eq!(arc.counted(), Micrometres(3));
+    }
+
+    #[test]
     fn inside_a_quadrant_the_digit_gives_back_the_signs_of_the_point() {
         for (x, y, digit) in [(3, 4, '1'), (-3, 4, '2'), (-3, -4, '3'), (3, -4, '4')] {
             let point = Position::new(x, y);

@@ -152,7 +152,7 @@ impl<R: io::Read> Motions<R> {
         let told = match Branch::at(block.signed(), sense) {
             Ok(branch) if block.j.0 > 0 => {
                 let turns = block.j.0 as f64 / branch.turn(self.model.bend());
-                told_as(turns, block.signed(), end - start + block.signed(), sense)
+                told_as(turns, block.signed(), end - start, sense)
             }
             // Nothing is counted, so nothing moves: not the full circle that an arc with equal ends would be.
             Ok(_) | Err(_) => Told::Line,
@@ -216,13 +216,14 @@ enum Told {
     Arcs(i64),
 }
 
-/// How an arc is told that goes round so many `turns`, from `from` to `to` as seen from the centre.
+/// How an arc is told that goes round so many `turns`, begins at `from` as seen from the centre, and ends so far away as
+/// it has `moved`.
 ///
 /// The ends of an arc say how far it goes, if it is less than a whole turn and more than a pulse or two: one that has not
 /// come ahead of its start would be taken for a whole turn, and is a line. Near a whole turn the ends say it where the arc
 /// ends short of its start, or on it. Beyond, half turns are told: they are far from what could be mistaken.
-fn told_as(turns: f64, from: Position, to: Position, sense: Sense) -> Told {
-    let cross = from.x.0 * to.y.0 - from.y.0 * to.x.0;
+fn told_as(turns: f64, from: Position, moved: Position, sense: Sense) -> Told {
+    let cross = from.x.0 * moved.y.0 - from.y.0 * moved.x.0;
     let ahead = match sense {
         Sense::CounterClockwise => cross > 0,
         Sense::Clockwise => cross < 0,

@@ -138,3 +138,6 @@ const SAMPLES: usize = 32;
 const SECTIONS: usize = 30;
 /// What a difference of cosines or lengths must exceed to be told from a rounding.
 const NOTHING: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests;

@@ -140,3 +140,6 @@ fn along(value: f64, sense: Sense) -> f64 {
 pub(super) fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
 }
+
+#[cfg(test)]
+mod tests;

@@ -82,6 +82,35 @@ fn an_arc_is_as_long_as_its_count_says_however_it_is_told() {
 }
 
 #[test]
+fn away_from_the_axes_and_from_the_start_arcs_are_as_long_as_their_turns_too() {
+    // From (3, 4) about the centre, 5 mm of radius; half a turn is twice the radius along either axis, wherever it begins.
+    for (turns, count) in [(0.5, 10_000), (1.0, 20_000), (1.5, 30_000), (2.0, 40_000)] {
+        for block in [format!("B3000B4000B{count}GXNR1"), format!("B3000B4000B{count}GYSR1")] {
+            let found = elements(&format!("B7000B3000B7000GXL4{block}"), Model::Rotated);
+            let length: f64 = found[1..].iter().map(Element::length).sum();
+            let wanted = turns * 10.0 * std::f64::consts::PI;
+            assert!((length - wanted).abs() < 0.02, "{block}: {length} {wanted}");
+        }
+    }
+    // Down from 4 to 3 by X from 3 to 4, an arc of the angle between the two; and the same beyond a turn.
+    let angle = libm::atan2(4.0, 3.0) - libm::atan2(3.0, 4.0);
+    for (turns, count) in [(0.0, 1000), (1.0, 21_000)] {
+        for block in [
+            format!("B3000B4000B{count}GYSR1"),
+            format!("B4000B3000B{count}GXNR1"),
+            format!("B4000B3000B{count}GYNR1"),
+            format!("B3000B4000B{count}GXSR1"),
+        ] {
+            let found = elements(&format!("B9000B20000B20000GYL1{block}"), Model::Rotated);
+            let length: f64 = found[1..].iter().map(Element::length).sum();
+            let wanted = 5.0 * (angle + turns * std::f64::consts::TAU);
+            assert!(found[1..].iter().all(|way| matches!(way, Element::Arc { .. })), "{block}");
+            assert!((length - wanted).abs() < 0.02, "{block}: {length} {wanted}");
+        }
+    }
+}
+
+#[test]
 fn equal_pieces_of_a_count_lie_where_the_circle_has_used_it_up() {
     // Two and a half turns of 1 mm, counted along X from (1, 0): five half turns, 2 mm of X each.
     let found = elements("B1000B0B10000GXNR1", Model::Exact);
@@ -184,7 +213,7 @@ fn a_kilometre_from_the_start_is_reached_and_not_passed() {
         ((COORDINATE_MAX - 1000, 0), "B1000B0B1000GXL1", "B1000B0B1000GXL3"),
         ((0, 1000 - COORDINATE_MAX), "B0B1000B1000GYL4", "B0B1000B1000GYL2"),
     ] {
-        let source = format!("{block}{back}{block}{block}");
+        let source = format!("{block}{back}{block}{block} ; beyond what any machine can reach");
         let mut motions = Motions::of_three_b(source.as_bytes(), Model::Rotated);
         motions.at = Position::new(at.0, at.1);
         for _ in 0..3 {
@@ -192,6 +221,8 @@ fn a_kilometre_from_the_start_is_reached_and_not_passed() {
         }
         let error = motions.next().unwrap().unwrap_err();
         assert!(error.to_string().contains("more than a kilometre"), "{error}");
+        let ReadError::Program { place, .. } = error else { panic!("{error}") };
+        assert_eq!((place.line, place.column, place.width), (1, 3 * 16 + 1, 16));
     }
 }
 

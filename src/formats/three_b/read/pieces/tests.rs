@@ -125,10 +125,11 @@ fn the_longest_line_is_held_and_one_byte_more_is_told_with_its_place() {
     let longest = "x".repeat(LINE_BYTES_MAX);
     for at_once in [1000, usize::MAX] {
         assert_eq!(pieces(Drops::of(longest.as_bytes(), at_once)).unwrap().len(), 1);
-        let text = format!("D\n{longest}x\n");
+        let text = format!("D\n{longest}y\n");
         let (message, place) = refusal(Drops::of(text.as_bytes(), at_once));
         assert_eq!(message, "the line is longer than 65536 bytes and not of blocks alone");
         assert_eq!((place.line, place.column, place.byte), (2, 65_537, 65_538));
+        assert_eq!(&place.excerpt[place.caret..], "y");
     }
     // What stands among blocks may be a remark that holds the pattern of one.
     for mark in [';', '(', '*', '=', '%'] {
