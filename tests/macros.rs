@@ -7,6 +7,8 @@ mod conformance;
 mod diagnostics;
 #[path = "macros/expand.rs"]
 mod expand;
+#[path = "macros/expressions.rs"]
+mod expressions;
 #[path = "macros/fuzz.rs"]
 mod fuzz;
 #[path = "macros/numbers.rs"]
