@@ -11,6 +11,7 @@
 pub mod lead;
 pub mod reverse;
 pub mod runs;
+pub mod thinning;
 
 use crate::geometry::Element;
 use crate::place::Spot;

@@ -65,6 +65,9 @@ impl Decimal {
         if size == 0 {
             return Self::ZERO;
         }
+        if size % 2 == 1 {
+            return self; // No multiple of ten.
+        }
         for step in [16, 8, 4, 2, 1] {
             if scale >= step {
                 let quotient = wide::tenth(size, step);

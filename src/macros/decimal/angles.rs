@@ -27,7 +27,7 @@ impl Reduced {
         } else {
             90 * POWERS[usize::from(angle.scale)].unsigned_abs()
         };
-        let (quarters, rest) = (size / right, size % right);
+        let (quarters, rest) = if size < right { (0, size) } else { (size / right, size % right) };
         // The quarters of a number of 18 digits are whole to the last, so the remainder by 4 is too.
         let back = right - rest;
         let is_back = back < rest;

@@ -16,11 +16,12 @@ pub(super) fn nearest(value: f64) -> Result<Decimal, Undefined> {
         decimals -= 1;
     }
     let mut noughts = 0;
-    while size / POWERS[noughts] as f64 >= limit {
+    while decimals == 0 && size / POWERS[noughts] as f64 >= limit {
         noughts += 1;
     }
-    let digits = (size * POWERS[decimals] as f64 / POWERS[noughts] as f64).round_ties_even();
-    let size = digits as u64 * POWERS[noughts].unsigned_abs();
+    // At most 10^15, where halves are still told apart.
+    let digits = size * POWERS[decimals] as f64 / POWERS[noughts] as f64 + 0.5;
+    let size = (digits as i64).unsigned_abs() * POWERS[noughts].unsigned_abs();
     if size > i64::MAX.unsigned_abs() {
         return Err(Undefined::TooLarge);
     }

@@ -26,10 +26,8 @@ pub(super) fn fitted(value: i128, scale: u8) -> Result<Decimal, Undefined> {
         if drop > scale {
             return Err(Undefined::TooLarge);
         }
-        let divisor = power(drop);
-        let quotient = size / u128::from(divisor);
-        let rest = (size - quotient * u128::from(divisor)) as u64;
-        match rounded(quotient, rest, divisor) {
+        let (quotient, rest) = if drop == 0 { (size as u64, 0) } else { tenth_wide(size, usize::from(drop)) };
+        match rounded(quotient, rest, power(drop)) {
             Some(size) => return Ok(made(size, negative, scale - drop, rest == 0)),
             None => drop += 1, // Rounded up beyond the largest mantissa.
         }
@@ -55,8 +53,9 @@ pub(super) fn quotient(one: Decimal, other: Decimal) -> Result<Decimal, Undefine
             return Err(Undefined::TooLarge);
         };
         let raised = raised(dividend, noughts).ok_or(Undefined::TooLarge)?;
-        let quotient = raised / u128::from(divisor);
-        let rest = (raised - quotient * u128::from(divisor)) as u64;
+        // The quotient is at most half a unit above the largest mantissa.
+        let quotient = (raised / u128::from(divisor)) as u64;
+        let rest = (raised - u128::from(quotient) * u128::from(divisor)) as u64;
         match rounded(quotient, rest, divisor) {
             Some(size) => return Ok(made(size, negative, scale as u8, rest == 0)),
             None => noughts = noughts.checked_sub(1).ok_or(Undefined::TooLarge)?,
@@ -65,13 +64,13 @@ pub(super) fn quotient(one: Decimal, other: Decimal) -> Result<Decimal, Undefine
 }
 
 /// A quotient rounded to even by its rest; none beyond the largest mantissa.
-fn rounded(quotient: u128, rest: u64, divisor: u64) -> Option<u64> {
+fn rounded(quotient: u64, rest: u64, divisor: u64) -> Option<u64> {
     let up = match rest.cmp(&(divisor - rest)) {
         std::cmp::Ordering::Less => false,
         std::cmp::Ordering::Equal => quotient % 2 == 1,
         std::cmp::Ordering::Greater => true,
     };
-    u64::try_from(quotient + u128::from(up)).ok().filter(|size| *size <= MANTISSA_MAX)
+    Some(quotient + u64::from(up)).filter(|size| *size <= MANTISSA_MAX)
 }
 
 /// An exact result is kept in its fewest digits, so that what is counted on with it fits and is quick.
@@ -81,8 +80,8 @@ fn made(size: u64, negative: bool, scale: u8, is_exact: bool) -> Decimal {
 }
 
 /// `10^digits`, for 0 to 19.
-fn power(digits: u8) -> u64 {
-    POWERS.get(usize::from(digits)).map_or(10_000_000_000_000_000_000, |power| power.unsigned_abs())
+const fn power(digits: u8) -> u64 {
+    if digits < 19 { POWERS[digits as usize].unsigned_abs() } else { 10_000_000_000_000_000_000 }
 }
 
 /// `size × 10^digits`, where 128 bits hold it.
@@ -130,6 +129,50 @@ const RECIPROCALS: [Reciprocal; 19] = {
     reciprocals
 };
 
+/// `size / 10^digits` towards zero, and what is left, for 1 to 19 digits; the quotient is below 2^64.
+///
+/// Two multiplications in place of a division by 128 bits (Möller and Granlund, "Improved division by invariant
+/// integers", 2011, algorithm 4).
+fn tenth_wide(size: u128, digits: usize) -> (u64, u64) {
+    let Inverse { divisor, inverse, shift } = INVERSES[digits];
+    let size = size << shift;
+    let (high, low) = ((size >> 64) as u64, size as u64);
+    let product = (u128::from(inverse) * u128::from(high)).wrapping_add(size);
+    let mut quotient = ((product >> 64) as u64).wrapping_add(1);
+    let mut rest = low.wrapping_sub(quotient.wrapping_mul(divisor));
+    if rest > product as u64 {
+        quotient = quotient.wrapping_sub(1);
+        rest = rest.wrapping_add(divisor);
+    }
+    if rest >= divisor {
+        quotient += 1;
+        rest -= divisor;
+    }
+    (quotient, rest >> shift)
+}
+
+/// A power of ten shifted up to its highest bit, and ⌊(2^128 - 1) / it⌋ less 2^64.
+#[derive(Clone, Copy)]
+struct Inverse {
+    divisor: u64,
+    inverse: u64,
+    shift: u32,
+}
+
+/// By the number of digits; that of no digits is not used.
+const INVERSES: [Inverse; 20] = {
+    let mut inverses = [Inverse { divisor: 0, inverse: 0, shift: 0 }; 20];
+    let mut n = 1;
+    while n < inverses.len() {
+        let shift = power(n as u8).leading_zeros();
+        let divisor = power(n as u8) << shift;
+        let inverse = u128::MAX / divisor as u128 - (1 << 64);
+        inverses[n] = Inverse { divisor, inverse: inverse as u64, shift };
+        n += 1;
+    }
+    inverses
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -149,6 +192,28 @@ mod tests {
                 let size = size >> (1 + size % 60);
                 assert_eq!(tenth(size, n), size / power, "{size} / 10^{n}");
                 assert_eq!(nearest_tenth(size, n), (size + power / 2) / power, "{size} / 10^{n}");
+            }
+        }
+    }
+
+    #[test]
+    fn dividing_by_an_inverse_is_dividing() {
+        let mut state = 0x9E37_79B9_7F4A_7C15_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state >> 1 >> (state % 62)
+        };
+        for n in 1..20 {
+            let power = u128::from(power(n));
+            let edges =
+                [0, 1, power - 1, power, power + 1, power << 63, (power << 63) - 1, (power << 64) - 1];
+            let sizes = (0..5000).flat_map(|_| {
+                let quotient = u128::from(random()) * power;
+                [quotient, quotient + power - 1, quotient + u128::from(random()) % power]
+            });
+            for size in sizes.chain(edges) {
+                let expected = ((size / power) as u64, (size % power) as u64);
+                assert_eq!(tenth_wide(size, usize::from(n)), expected, "{size} / 10^{n}");
             }
         }
     }
