@@ -137,7 +137,7 @@ impl<'a> Reader<'a> {
             }
         }
         self.close(at);
-        if !self.units.last().is_some_and(|unit| unit.at.file == file) {
+        if self.units.last().is_none_or(|unit| unit.at.file != file) {
             self.unit = Some(OpenUnit { number, entry: self.code.next(), at, is_blank: true });
             self.close(at);
         }

@@ -19,7 +19,7 @@ fn counted(program: &dripfeed::macros::program::Program) -> Vec<String> {
     let mut expansion = Expansion::<Decimal>::new(Arc::new(program.clone()));
     let (mut block, mut blocks) = (Block::default(), Vec::new());
     loop {
-        match expansion.turn(u32::MAX, &mut block).unwrap() {
+        match expansion.turn(u32::MAX, &mut block).unwrap_or_else(|e| panic!("{e}")) {
             Turn::Block if block.words.is_empty() => {}
             Turn::Block => blocks.push(spell(program, &block)),
             Turn::Working => {}
