@@ -63,13 +63,13 @@ pub enum FitError {
     #[error("the curve's parameter goes from {0} to {1}")]
     Range(f64, f64),
     /// The curve has no point somewhere.
-    #[error("the curve has no finite point at parameter {0}")]
+    #[error("the curve has no finite point at parameter {0:e}")]
     NotFinite(f64),
     /// The curve goes where no length is measured.
     #[error("the curve leads to a point {0:e} mm out")]
     Far(f64),
     /// Neither lines nor arcs follow it.
-    #[error("the curve cannot be followed at parameter {0}")]
+    #[error("the curve cannot be followed at parameter {0:e}")]
     Lost(f64),
     /// It would take more elements than [`ELEMENTS_MAX`].
     #[error("the curve takes more than {ELEMENTS_MAX} elements")]

@@ -218,6 +218,17 @@ impl<'a> Model<'a> {
             self.fault("too-deep", message, line, "explode the inner ones");
             return;
         }
+        if insert.scale.contains(&0.0) {
+            let message = format!("block {} is inserted at a scale of 0", block.name);
+            self.fault("unusable", message, line, "repair the insert");
+            return;
+        }
+        if insert.columns < 0 || insert.rows < 0 {
+            let (columns, rows) = (insert.columns, insert.rows);
+            let message = format!("block {} is inserted in {columns} columns and {rows} rows", block.name);
+            self.fault("unusable", message, line, "repair the insert");
+            return;
+        }
         let entities = &records.entities[block.entities.clone()];
         inside.push(insert.block);
         for row in 0..insert.rows.max(1) {

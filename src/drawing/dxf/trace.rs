@@ -68,12 +68,8 @@ pub(super) fn trace(figure: &Figure, placement: &Placement, with: &Fit) -> Resul
         Figure::Spline(nurbs) => spline(nurbs, placement, with)?,
         Figure::Insert(_) | Figure::Uncut(_) => Vec::new(),
     };
-    let all_near = |e: &Element| match *e {
-        Element::Line { start, end } => is_near(start) && is_near(end),
-        Element::Arc { start, end, centre, .. } => {
-            is_near(start) && is_near(end) && (centre - start).norm().is_finite()
-        }
-    };
+    // An arc may lead far out between ends that are near.
+    let all_near = |e: &Element| e.radius().is_none_or(f64::is_finite) && e.extent().into_iter().all(is_near);
     if !elements.iter().all(all_near) {
         return Err(TraceError::Far);
     }

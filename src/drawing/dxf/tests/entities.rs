@@ -227,6 +227,18 @@ fn what_cannot_be_cut_is_a_fault_with_its_kind_layer_and_line() {
 }
 
 #[test]
+fn an_arc_that_leads_far_out_between_near_ends_is_refused_and_a_flat_one_is_not() {
+    let bulge = |bulge: &str| {
+        let entity = format!("0 LWPOLYLINE|8 A|10 0|20 0|42 {bulge}|10 10|20 0");
+        codes(&read_text(&file(&entity), &Options::default()))
+    };
+    // 5 km out, and 500 km; the last is all but straight about a centre 2 500 km away.
+    assert_eq!(bulge("1e6"), ["open-end", "open-end"]);
+    assert_eq!(bulge("-1e8"), ["unusable", "nothing-to-cut"]);
+    assert_eq!(bulge("1e-9"), ["open-end", "open-end"]);
+}
+
+#[test]
 fn what_is_not_cut_is_told_by_kind_and_layer() {
     let drawing = read_text(
         &file(

@@ -127,6 +127,11 @@ fn inserts_that_lead_nowhere_or_into_themselves_are_faults() {
         told(ARROW, "0 INSERT|2 ARROW|10 0|20 0|210 1|220 0|230 1"),
         "block ARROW is inserted in a tilted plane"
     );
+    assert_eq!(told(ARROW, "0 INSERT|2 ARROW|10 0|20 0|42 0"), "block ARROW is inserted at a scale of 0");
+    assert_eq!(
+        told(ARROW, "0 INSERT|2 ARROW|10 0|20 0|70 2|71 -3"),
+        "block ARROW is inserted in 2 columns and -3 rows"
+    );
     let many = "0 INSERT|2 ARROW|10 0|20 0|70 30000|71 30000|44 9|45 9";
     assert_eq!(told(ARROW, many), "the drawing's inserts show more than 4000000 entities");
 }
