@@ -205,3 +205,6 @@ fn joined(before: &Element, after: &Element) -> Element {
 
 /// How far a found node may be off, mm: a few times what the library takes for one point.
 const NEAR: f64 = 5e-5;
+
+#[cfg(test)]
+mod tests;

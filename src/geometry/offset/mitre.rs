@@ -96,3 +96,6 @@ const SMOOTH: f64 = 1e-4;
 const NEAR: f64 = 1e-4;
 /// Places looked at on each straight; the distance changes by less than a quarter of the offset between two.
 const SAMPLES: usize = 16;
+
+#[cfg(test)]
+mod tests;
