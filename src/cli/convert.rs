@@ -34,6 +34,7 @@ use crate::interpolator::Model;
 use crate::motion::lead;
 use crate::motion::reverse::reversed;
 use crate::motion::runs::ContourError;
+use crate::motion::thinning::{self, Thinning};
 use crate::motion::{Act, Motion, Offset};
 use crate::part::aim_named;
 use crate::part::file::{AIMS, STOP_WORDS};
@@ -81,6 +82,12 @@ struct Wire {
     /// How the wire goes round outside corners: on an arc, or straight on [default: round]
     #[arg(long, value_name = "CORNERS")]
     corners: Option<CornersWord>,
+    /// Merge chains of short lines into fewer lines and arcs, no farther than this from them, mm [default: each line stays]
+    #[arg(long, value_name = "MM", value_parser = distance)]
+    thin: Option<f64>,
+    /// What --thin merges into [default: arcs, and lines where they reach farther]
+    #[arg(long, value_name = "WHAT", requires = "thin")]
+    thin_into: Option<ThinInto>,
     /// Cut every contour backwards, from its own start hole
     #[arg(long)]
     reverse: bool,
@@ -126,6 +133,14 @@ struct Gcode {
     /// Leave out words that are in force already
     #[arg(long)]
     suppress: bool,
+}
+
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+enum ThinInto {
+    /// Lines alone
+    Lines,
+    /// Lines and arcs
+    Arcs,
 }
 
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
@@ -283,6 +298,9 @@ impl Blocks {
     }
 }
 
+/// The largest arc that thinning makes, mm: what six digits of micrometres hold in 3B.
+const ARC_RADIUS_MAX: f64 = 999.999;
+
 type Stream = Box<dyn Iterator<Item = Result<Motion, ContourError>>>;
 
 /// What is to be written, motion by motion.
@@ -293,7 +311,7 @@ fn changed(motions: Motions, options: &Options, to: To, places: &mut Places) -> 
         Side::Right => crate::motion::Side::Right,
     });
     let mut stream = match &motions.drawn {
-        Some(drawing) if options.has_plan(to) => {
+        Some(drawing) if options.has_plan(to) && wire.thin.is_none() => {
             let needs = plan::Wire {
                 offset: wire.offset,
                 side,
@@ -303,6 +321,10 @@ fn changed(motions: Motions, options: &Options, to: To, places: &mut Places) -> 
             };
             let cutting = options.plan.cut(drawing, &needs, places)?;
             Box::new(cutting.map(|motion| motion.map_err(cannot_be_cut))) as Stream
+        }
+        Some(_) if wire.thin.is_some() => {
+            return Err(Failure::new(Exit::Usage, "--thin goes with programs")
+                .help("the curves of a drawing become as few lines and arcs as --tolerance allows"));
         }
         Some(_) => {
             let drawn = motions.map(|motion| motion.map_err(ContourError::from));
@@ -322,6 +344,14 @@ fn changed(motions: Motions, options: &Options, to: To, places: &mut Places) -> 
                 ));
             }
             let mut stream: Stream = Box::new(motions.map(|motion| motion.map_err(ContourError::from)));
+            if let Some(tolerance) = wire.thin.filter(|tolerance| *tolerance > 0.0) {
+                let into = match wire.thin_into {
+                    Some(ThinInto::Lines) => thinning::Into::Lines,
+                    Some(ThinInto::Arcs) | None => thinning::Into::LinesAndArcs,
+                };
+                let thinning = Thinning { tolerance, into, radius_max: ARC_RADIUS_MAX };
+                stream = Box::new(thinning::thinned(stream, thinning));
+            }
             if let Some(start) = wire.start.first() {
                 if kind == Kind::Gcode {
                     let message = "--start goes with 3B, 4B, parts and drawings; G-code says where it begins";

@@ -80,9 +80,15 @@ impl MacroProgram {
             }
             last.unwrap_or_else(|| Failure::new(Exit::Program, format!("{name} cannot be read")))
         })?;
-        let made = Self { program: Arc::new(program), form, arithmetic: profile.arithmetic, suppress };
-        say_findings(name, made.program.findings());
-        Ok(made)
+        let (mut errors, warnings): (Vec<Finding>, Vec<Finding>) =
+            program.findings().iter().cloned().partition(|finding| finding.severity == Severity::Error);
+        say_findings(name, &warnings);
+        // A program that is foreseen to break is not begun.
+        if let Some(last) = errors.pop() {
+            say_findings(name, &errors);
+            return Err(failure(name, last.error));
+        }
+        Ok(Self { program: Arc::new(program), form, arithmetic: profile.arithmetic, suppress })
     }
 
     /// Its lines, from the first.
