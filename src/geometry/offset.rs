@@ -17,7 +17,6 @@ mod unreached;
 use cavalier_contours::core::Control;
 use cavalier_contours::polyline::{
     PlineIntersect, PlineOffsetOptions, PlineSelfIntersectOptions, PlineSource, Polyline,
-    SelfIntersectsInclude,
 };
 use thiserror::Error;
 
@@ -176,7 +175,7 @@ impl Outline {
                 Element::Line { .. } if start == end => None,
                 Element::Line { .. } => Some(Element::Line { start, end }),
                 // An arc shrunk to nothing must not become a full circle, nor a full circle nothing.
-                Element::Arc { .. } if start == end && element.sweep() < std::f64::consts::PI => None,
+                Element::Arc { .. } if start == end && element.sweep() <= std::f64::consts::PI => None,
                 Element::Arc { centre, sense, .. } => Some(Element::Arc { start, end, centre, sense }),
             };
             if let Some(kept) = kept {
@@ -219,11 +218,9 @@ fn check_numbers(path: &Path, left: f64, corners: Corners) -> Result<(), Impossi
 
 fn check_meetings(source: &Source) -> Result<(), Impossible> {
     let mut meetings = Vec::new();
-    let options = PlineSelfIntersectOptions {
-        aabb_index: Some(&source.index),
-        include: SelfIntersectsInclude::All,
-        ..PlineSelfIntersectOptions::new()
-    };
+    // By themselves the options include every kind of meeting.
+    let options =
+        PlineSelfIntersectOptions { aabb_index: Some(&source.index), ..PlineSelfIntersectOptions::new() };
     let mut visitor = |meeting: PlineIntersect<f64>| {
         let (first, second, at) = match meeting {
             PlineIntersect::Basic(it) => (it.start_index1, it.start_index2, it.point),

@@ -354,3 +354,60 @@ fn an_arc_over_a_wall_that_goes_on_tells_half_the_way_to_the_wall() {
     assert_eq!((pocket.first, pocket.last), (1, 1));
     assert!((pocket.largest - (radius - 9.2) / 2.0).abs() < 1e-4, "{pocket:?} {}", (radius - 9.2) / 2.0);
 }
+
+#[test]
+fn half_a_circle_shrunk_to_a_point_vanishes_too() {
+    let (start, end) = (p(2.0002, 0.0), p(1.9998, 0.0));
+    let arc = Element::Arc { start, end, centre: p(2.0, 0.0), sense: Sense::Clockwise };
+    let path = Path::new(vec![arc, Element::Line { start: end, end: p(9.0, 0.0) }]).unwrap();
+    let rounded = offset(&path, 0.0, Corners::Round).unwrap().outlines[0].rounded().unwrap();
+    assert_eq!(rounded.origins, [Origin::Element(1)]);
+}
+
+#[test]
+fn an_elements_own_part_comes_before_its_corner_and_both_before_the_next() {
+    let orders: Vec<usize> =
+        (0..4).flat_map(|n| [Origin::Element(n).order(), Origin::Corner(n).order()]).collect();
+    assert!(orders.is_sorted_by(|a, b| a < b), "{orders:?}");
+}
+
+#[test]
+fn outlines_come_in_the_order_of_the_contour_wherever_it_begins() {
+    let path = polygon(&[
+        (0.0, 0.0),
+        (4.0, 0.0),
+        (4.0, 1.8),
+        (8.0, 1.8),
+        (8.0, 0.0),
+        (12.0, 0.0),
+        (12.0, 4.0),
+        (8.0, 4.0),
+        (8.0, 2.2),
+        (4.0, 2.2),
+        (4.0, 4.0),
+        (0.0, 4.0),
+    ]);
+    for first in 0..12 {
+        let found = offset(&path.clone().begun_at(first), 0.5, Corners::Round).unwrap();
+        let begun: Vec<usize> = found.outlines.iter().map(|outline| outline.origins[0].element()).collect();
+        assert!(begun.len() == 2 && begun[0] < begun[1], "{first}: {begun:?}");
+        // Each begins with the first element of the contour that it runs beside.
+        for outline in &found.outlines {
+            let least = outline.origins.iter().map(|origin| origin.element()).min();
+            assert_eq!(Some(outline.origins[0].element()), least, "{first}");
+        }
+    }
+}
+
+#[test]
+fn more_meetings_than_one_are_counted_in_words() {
+    let told: Vec<String> = [1, 2, 3, 99, 100].into_iter().map(others).collect();
+    let wanted = [
+        "",
+        " (and in one more place)",
+        " (and in 2 more places)",
+        " (and in 98 more places)",
+        " (and in 99 more places at least)",
+    ];
+    assert_eq!(told, wanted);
+}

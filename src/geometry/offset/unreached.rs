@@ -254,3 +254,6 @@ fn fraction_beside(element: &Element, point: Point) -> f64 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::Vector;
+use cavalier_contours::polyline::{PlineCreation, PlineSourceMut};
 
 fn p(x: f64, y: f64) -> Point {
     Point::new(x, y)
@@ -227,6 +228,51 @@ fn neighbours_that_are_one_way_are_made_one_and_others_are_not() {
         for (found, wanted) in elements.iter().zip(&wanted) {
             assert!((found.start() - wanted.start()).norm() + (found.end() - wanted.end()).norm() < 1e-12);
             assert!((found.length() - wanted.length()).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn wherever_the_library_opened_a_ring_it_begins_beside_the_contours_beginning() {
+    let nodes = [p(0.0, 0.0), p(6.0, 0.0), p(6.0, 4.0), p(0.0, 4.0)];
+    let square = source((0..4).map(|n| line(nodes[n], nodes[(n + 1) % 4])).collect(), 0.5);
+    let inner = [p(0.5, 0.5), p(5.5, 0.5), p(5.5, 3.5), p(0.5, 3.5)];
+    let whole: Vec<Element> = (0..4).map(|n| line(inner[n], inner[(n + 1) % 4])).collect();
+    let origins: Vec<Origin> = (0..4).map(Origin::Element).collect();
+    // With the first side cut in two or in three, and opened at any of its places.
+    for extra in [&[][..], &[p(2.0, 0.5)], &[p(2.0, 0.5), p(4.0, 0.5)]] {
+        let mut ring = vec![inner[0]];
+        ring.extend(extra);
+        ring.extend(&inner[1..]);
+        for first in 0..ring.len() {
+            ring.rotate_left(usize::from(first > 0));
+            let mut found = Polyline::with_capacity(8, true);
+            for node in &ring {
+                found.add(node.x, node.y, 0.0);
+            }
+            let outline = outline(&square, &found).unwrap();
+            assert_eq!(outline.path.elements(), whole, "{first} {extra:?}");
+            assert_eq!(outline.origins, origins);
+        }
+    }
+    // An open one stays as it was found.
+    let way = source(vec![line(p(0.0, 0.0), p(6.0, 0.0)), line(p(6.0, 0.0), p(6.0, 4.0))], 0.5);
+    let mut found = Polyline::with_capacity(2, false);
+    for node in [p(5.5, 1.0), p(5.5, 4.0)] {
+        found.add(node.x, node.y, 0.0);
+    }
+    let outline = outline(&way, &found).unwrap();
+    assert_eq!(outline.path.elements(), [line(p(5.5, 1.0), p(5.5, 4.0))]);
+    assert_eq!(outline.origins, [Origin::Element(1)]);
+}
+
+#[test]
+fn a_small_circle_is_told_from_one_a_little_larger() {
+    // The radius is far less than what a node may be off is of a large one: only the difference counts.
+    let centre = p(0.0, 0.0);
+    for radius in [1e-3, 0.1, 1.0, 40.0, 5000.0] {
+        for (off, wanted) in [(WITHIN, true), (BEYOND, false)] {
+            assert_eq!(round(centre, radius + off, 0.3, 1.1).is_on(centre, radius), wanted, "{radius} {off}");
         }
     }
 }
