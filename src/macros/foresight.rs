@@ -12,6 +12,7 @@ use super::diagnosis::condition;
 use super::findings::{Fault, NEVER_RUNS};
 use super::number::{Bits, Number, Rounding};
 use super::program::Program;
+use super::reader::FAULTS_MAX;
 use super::variables::{CONSTANTS, FRAME, RESULTS, is_variable, name_of};
 use crate::check::Severity;
 
@@ -247,7 +248,9 @@ impl<N: Number> Walk<'_, N> {
         message: String,
         help: &'static str,
     ) {
-        self.found.push((severity, Fault::new(code, around.at, message, help)));
+        if self.found.len() < FAULTS_MAX {
+            self.found.push((severity, Fault::new(code, around.at, message, help)));
+        }
     }
 
     fn body(&self, around: &Loop) -> &[Op] {

@@ -10,6 +10,7 @@ use super::findings::{Fault, Finding};
 use super::foresight::{self, sets};
 use super::number::Number;
 use super::program::Program;
+use super::reader::FAULTS_MAX;
 use super::variables::{FRAME, is_variable, name_of};
 use crate::check::Severity;
 
@@ -62,27 +63,38 @@ impl Program {
             let from = self.unit_of(pc as u32).entry;
             calls.entry(from).or_default().push((self.unit_of(entry).entry, pc));
         }
-        for (from, to) in &calls {
-            for (first, pc) in to {
-                let (mut seen, mut open) = (BTreeSet::new(), vec![*first]);
-                while let Some(unit) = open.pop() {
-                    if seen.insert(unit) {
-                        open.extend(calls.get(&unit).into_iter().flatten().map(|(to, _)| *to));
-                    }
-                }
-                if !seen.contains(from) {
+        // Depth first; a call of a program that has not returned closes a circle.
+        let name = |entry: u32| match self.unit_of(entry).number {
+            Some(number) => format!("O{number:04}"),
+            None => "the main program".to_owned(),
+        };
+        let (mut seen, mut waiting) = (BTreeSet::new(), BTreeSet::new());
+        for start in calls.keys().copied() {
+            let mut way = vec![(start, 0)];
+            while let Some((unit, next)) = way.last_mut() {
+                if *next == 0 && !seen.insert(*unit) {
+                    way.pop();
                     continue;
                 }
-                let name = |entry: u32| match self.unit_of(entry).number {
-                    Some(number) => format!("O{number:04}"),
-                    None => "the main program".to_owned(),
+                waiting.insert(*unit);
+                let Some((to, pc)) = calls.get(unit).and_then(|calls| calls.get(*next)).copied() else {
+                    waiting.remove(unit);
+                    way.pop();
+                    continue;
                 };
-                let through =
-                    if first == from { String::new() } else { format!(" through {}", name(*first)) };
-                let message = format!("{} calls itself{through}", name(*from));
-                let help = "macro calls are four levels deep at most; a loop repeats without calls";
-                found.push((Severity::Warning, Fault::new("recursion", self.code.marks[*pc], message, help)));
-                break;
+                *next += 1;
+                if !waiting.contains(&to) {
+                    way.push((to, 0));
+                } else if found.len() < FAULTS_MAX {
+                    let through =
+                        if to == *unit { String::new() } else { format!(" through {}", name(*unit)) };
+                    let message = format!("{} calls itself{through}", name(to));
+                    let help = "macro calls are four levels deep at most; a loop repeats without calls";
+                    found.push((
+                        Severity::Warning,
+                        Fault::new("recursion", self.code.marks[pc], message, help),
+                    ));
+                }
             }
         }
     }

@@ -258,6 +258,7 @@ fn loops_nest_and_numbers_are_used_again() {
         ("DO1\nDO1\nEND1\nEND1\n", "error 2:1: DO1 within the DO1 of line 1"),
         ("DO1\nDO2\nEND1\nEND2\n", "error 3:1: END1 within DO2: loops may not overlap"),
         ("END1\n", "END1 without DO1"),
+        ("DO2\nEND1\nEND2\n", "END1 without DO1"),
         ("DO1\n", "error 1:1: DO1 without END1"),
         ("DO4\nEND4\n", "not 1, 2 or 3"),
         ("WHILE[1EQ1]\n", "WHILE without DO"),

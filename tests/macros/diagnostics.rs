@@ -170,8 +170,10 @@ fn calls_in_a_circle_and_a_main_program_without_end() {
     assert!(
         found("M98 P1\nM30\nO1\nM98 P2\nM99\nO2\nM98 P1\nM99\n")
             .iter()
-            .any(|f| f.contains("warning recursion 4: O0001 calls itself through O0002"))
+            .any(|f| f.contains("warning recursion 7: O0001 calls itself through O0002"))
     );
+    assert_eq!(found("M30\nO1\nM98 P1\nM99\n"), ["warning recursion 3: O0001 calls itself"]);
+    assert!(found("M98 P1\nM98 P2\nM30\nO1\nM98 P2\nM99\nO2\nM99\n").is_empty());
     assert!(found("X1.\nM99\n")[0].starts_with("error endless 2: M99 in the main program"));
     assert!(found("M97 P1\nM30\nN1 X1.\nM99\n").is_empty());
 }
@@ -185,6 +187,21 @@ fn everything_wrong_is_told_in_one_run() {
     assert!(errors.iter().all(|e| !e.help.is_empty() && e.code == "macro-syntax"));
     let many = "X\n".repeat(1000);
     assert_eq!(Program::parse(many.as_bytes(), &mut NoPrograms, &options()).unwrap_err().len(), 50);
+}
+
+#[test]
+fn help_says_what_to_write() {
+    for (text, help) in [
+        ("ELSE\n", "write IF[…]GOTO n around what is left out"),
+        ("ENDIF\n", "write IF[…]GOTO n around what is left out"),
+        ("SETVN 101[A]\n", "write #<name> instead"),
+        ("POPEN\n", "output to other devices is for a control to do; take it out"),
+        ("X##1\n", "write #[#1]"),
+        ("#3000\n", "write #1=… to set it, X#1 to use it"),
+    ] {
+        let errors = Program::parse(text.as_bytes(), &mut NoPrograms, &options()).unwrap_err();
+        assert_eq!(errors[0].help, help, "{text}");
+    }
 }
 
 #[test]
