@@ -1,4 +1,4 @@
-//! Other programs judge what this one reads and writes: LinuxCNC's `rs274` the G-code, `ezdxf` the drawings, `shapely`
+//! Other programs judge what this one reads and writes: LinuxCNC's `rs274` the G-code and the macros, `ezdxf` the drawings, `shapely`
 //! the offsets.
 //!
 //! They must be installed, so these tests have a feature of their own: `.ci/run` installs them and runs
@@ -10,6 +10,8 @@ mod contours;
 mod drawing;
 #[path = "peers/gcode.rs"]
 mod gcode;
+#[path = "peers/macros.rs"]
+mod macros;
 #[path = "peers/offset.rs"]
 mod offset;
 

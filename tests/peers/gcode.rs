@@ -119,21 +119,7 @@ enum Canon {
 
 /// The motions `rs274` makes of a program, or what it complains about.
 fn canon(text: &str) -> Result<Vec<Canon>, String> {
-    let directory = tempfile::tempdir().unwrap();
-    let file = directory.path().join("program.nc");
-    std::fs::write(&file, text).unwrap();
-    // It has a piece of memory by one name: two at a time spoil it for each other.
-    static ONE: Mutex<()> = Mutex::new(());
-    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
-    // -g: through the whole file at once.
-    let run = Command::new("rs274").arg("-g").arg(&file).current_dir(directory.path()).output();
-    let run = run.expect("rs274 is installed: Debian's linuxcnc-uspace");
-    let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    if !run.status.success() || said.trim() != "executing" {
-        return Err(format!("{}: {said}", run.status));
-    }
-    let calls = String::from_utf8(run.stdout).unwrap();
-    assert!(calls.contains("PROGRAM_END()"), "{calls}");
+    let calls = interpreted(text)?;
     // The first G92 says where the program begins; the next ones shift its coordinates, and ours go on as they were.
     let (mut first, mut shift, mut shifts) = (Vector::zeros(), Vector::zeros(), 0);
     let mut motions = Vec::new();
@@ -156,8 +142,28 @@ fn canon(text: &str) -> Result<Vec<Canon>, String> {
     Ok(motions)
 }
 
+/// What `rs274` says a machine is to do.
+pub(crate) fn interpreted(text: &str) -> Result<String, String> {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("program.nc");
+    std::fs::write(&file, text).unwrap();
+    // It has a piece of memory by one name: two at a time spoil it for each other.
+    static ONE: Mutex<()> = Mutex::new(());
+    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+    // -g: through the whole file at once.
+    let run = Command::new("rs274").arg("-g").arg(&file).current_dir(directory.path()).output();
+    let run = run.expect("rs274 is installed: Debian's linuxcnc-uspace");
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    if !run.status.success() || said.trim() != "executing" {
+        return Err(format!("{}: {said}", run.status));
+    }
+    let calls = String::from_utf8(run.stdout).unwrap();
+    assert!(calls.contains("PROGRAM_END()"), "{calls}");
+    Ok(calls)
+}
+
 /// Name and numbers of a line such as `   12 N..... STRAIGHT_FEED(0.0000, 12.0000, …)`, where it is of a motion.
-fn call(line: &str) -> Option<(&str, Vec<f64>)> {
+pub(crate) fn call(line: &str) -> Option<(&str, Vec<f64>)> {
     let (name, rest) = line.get(12..)?.trim().split_once('(')?;
     if !["SET_G92_OFFSET", "STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED"].contains(&name) {
         return None;
