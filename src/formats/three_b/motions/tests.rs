@@ -1,4 +1,5 @@
 use super::*;
+use crate::formats::three_b::Axis;
 use crate::geometry::Vector;
 
 const MODELS: [Model; 2] = [Model::Rotated, Model::Exact];
@@ -243,4 +244,25 @@ fn a_line_number_is_a_header_and_a_remark_is_itself() {
     let told = told("N  7: B1000B0B1000GXL1 (one)\n", Model::Rotated);
     assert_eq!(told[0].act, Act::Header(b"N7".as_slice().into()));
     assert_eq!(told[2].act, Act::Comment(b"one".as_slice().into()));
+}
+
+#[test]
+fn the_count_of_a_quarter_turn_leads_ahead_of_the_start_at_once_and_a_turn_later() {
+    let (mut tried, size) = (0, 12i64);
+    for (x, y) in (-size..=size).flat_map(|x| (-size..=size).map(move |y| (x, y))).filter(|at| *at != (0, 0))
+    {
+        for (sense, sign) in [(Sense::CounterClockwise, 1), (Sense::Clockwise, -1)] {
+            for (model, g) in Model::ALL.into_iter().flat_map(|m| [(m, Axis::X), (m, Axis::Y)]) {
+                let start = Position::new(x, y);
+                let turn = Branch::at(start, sense).unwrap().turn(model.bend());
+                for j in [turn / 4.0, turn * 1.25].into_iter().filter(|j| *j >= 1.0 && j.fract() == 0.0) {
+                    let block = Block::arc(start, sense, g, Micrometres(j as i64));
+                    let Ok(moved) = model.displacement(&block) else { continue };
+                    assert!(sign * (x * moved.y.0 - y * moved.x.0) > 0, "{block:?} {model:?} {moved:?}");
+                    tried += 1;
+                }
+            }
+        }
+    }
+    assert!(tried > 5000, "{tried}");
 }
