@@ -206,7 +206,7 @@ impl Check {
             taper: taper::Tapers::new(settings.taper_max),
             tape: settings.tape.map(tape::Characters::new),
             travel: travel::Reach::new(settings.travel),
-            wire: wire::Wire::default(),
+            wire: wire::Wire::new(settings.travel),
         }
     }
 
@@ -218,6 +218,7 @@ impl Check {
         }
         let ledger = &mut self.ledger;
         let wire = &mut self.wire;
+        wire.see_programmed(motion);
         let mut tell = |finding| {
             wire.note(&finding);
             ledger.add(finding);
@@ -241,7 +242,7 @@ impl Check {
     pub fn see_wire(&mut self, seen: &wire::Seen<'_>) {
         if !self.unreadable && !self.syntax_only {
             let ledger = &mut self.ledger;
-            self.wire.see(seen, &mut |finding| ledger.add(finding));
+            self.wire.see(seen, self.travel.beyond(), &mut |finding| ledger.add(finding));
         }
     }
 

@@ -40,13 +40,9 @@ mod run;
 #[cfg(test)]
 mod tests;
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 
-use thiserror::Error;
-
-use crate::formats::ReadError;
 use crate::geometry::offset::{Corners, Unreached};
 use crate::geometry::{Element, Point};
 use crate::motion::runs::ContourError;
@@ -64,7 +60,7 @@ pub struct Compensated<I> {
     state: State,
     /// Where the wire stands, when that is not where the program is.
     standing: Option<Point>,
-    ready: VecDeque<Result<Motion, CompensationError>>,
+    ready: VecDeque<Result<Motion, ContourError>>,
     warnings: Vec<Warning>,
     is_over: bool,
 }
@@ -91,58 +87,32 @@ pub enum Fate {
     CutInto,
 }
 
+impl Warning {
+    /// What the wire does not do as it should, and where.
+    #[must_use]
+    pub fn message(&self) -> String {
+        let at = self.unreached.at;
+        let does = match self.fate {
+            Fate::PassedBy => "does not reach",
+            Fate::CutInto => "cuts into",
+        };
+        format!("the wire {does} the contour at X{:.3} Y{:.3}", at.x, at.y)
+    }
+
+    /// Up to where it would.
+    #[must_use]
+    pub fn help(&self) -> String {
+        let does = match self.fate {
+            Fate::PassedBy => "does",
+            Fate::CutInto => "does not",
+        };
+        format!("the largest offset that {does} is {:.3} mm", self.unreached.largest)
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Unreached { at, largest, .. } = self.unreached;
-        let (what, does) = match self.fate {
-            Fate::PassedBy => ("does not reach", "does"),
-            Fate::CutInto => ("cuts into", "does not"),
-        };
-        write!(f, "block {}: the wire {what} the contour at X{:.3} Y{:.3}; ", self.block, at.x, at.y)?;
-        write!(f, "the largest offset that {does} is {largest:.3} mm")
-    }
-}
-
-/// Why a program has no path of the wire.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum CompensationError {
-    /// The program itself could not be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// An offset in it cannot be done.
-    #[error("{message}")]
-    Program {
-        /// The rule broken.
-        message: String,
-        /// The number of the block.
-        block: u64,
-        /// Where it stands in the source.
-        spot: Spot,
-        /// What to do about it.
-        help: Cow<'static, str>,
-    },
-}
-
-impl From<ContourError> for CompensationError {
-    fn from(error: ContourError) -> Self {
-        match error {
-            ContourError::Read(error) => Self::Read(error),
-            ContourError::Contour { message, block, spot, help } => {
-                Self::Program { message, block, spot, help }
-            }
-        }
-    }
-}
-
-impl From<CompensationError> for ContourError {
-    fn from(error: CompensationError) -> Self {
-        match error {
-            CompensationError::Read(error) => Self::Read(error),
-            CompensationError::Program { message, block, spot, help } => {
-                Self::Contour { message, block, spot, help }
-            }
-        }
+        write!(f, "block {}: {}; {}", self.block, self.message(), self.help())
     }
 }
 
@@ -171,7 +141,7 @@ struct On {
 impl<I, E> Compensated<I>
 where
     I: Iterator<Item = Result<Motion, E>>,
-    E: Into<CompensationError>,
+    E: Into<ContourError>,
 {
     /// The wire's path for motions, with what the registers of the control hold, mm; a distance in the motion itself
     /// comes first.
@@ -194,7 +164,7 @@ where
         std::mem::take(&mut self.warnings)
     }
 
-    fn take(&mut self, motion: Motion) -> Result<(), CompensationError> {
+    fn take(&mut self, motion: Motion) -> Result<(), ContourError> {
         match std::mem::replace(&mut self.state, State::Off) {
             State::Off => match motion.act {
                 Act::Offset(said) => self.switched(said, &motion)?,
@@ -215,7 +185,7 @@ where
                     self.state = State::Running { on, run: Box::new(Run::new(lead_in)) };
                 }
                 Act::Move { .. } => {
-                    return Err(fault(
+                    return Err(ContourError::at(
                         &motion,
                         "the move after the offset is switched on is not straight",
                         LEAD,
@@ -230,14 +200,14 @@ where
                 Act::Offset(Offset::Off) => self.finish(on, &run)?,
                 Act::Offset(said) if said == on.said => self.state = State::Running { on, run },
                 Act::Offset(_) => {
-                    return Err(fault(&motion, "the offset changes within a contour", CHANGE));
+                    return Err(ContourError::at(&motion, "the offset changes within a contour", CHANGE));
                 }
                 Act::Stop(Stop::End) => {
                     self.finish(on, &run)?;
                     self.ready.push_back(Ok(motion));
                 }
                 Act::Move { upper: Some(_), .. } => {
-                    return Err(fault(
+                    return Err(ContourError::at(
                         &motion,
                         "the wire's upper end has a way of its own under an offset",
                         UPPER,
@@ -245,7 +215,11 @@ where
                 }
                 _ => {
                     if run.len() == RUN_MOST {
-                        return Err(fault(&motion, "the offset stays on for too many blocks", CHANGE));
+                        return Err(ContourError::at(
+                            &motion,
+                            "the offset stays on for too many blocks",
+                            CHANGE,
+                        ));
                     }
                     run.push(motion);
                     self.state = State::Running { on, run };
@@ -255,7 +229,7 @@ where
         Ok(())
     }
 
-    fn switched(&mut self, said: Offset, motion: &Motion) -> Result<(), CompensationError> {
+    fn switched(&mut self, said: Offset, motion: &Motion) -> Result<(), ContourError> {
         let Offset::On { side, distance, register } = said else { return Ok(()) };
         let held = register.and_then(|number| self.registers.get(&number).copied());
         let Some(distance) = distance.or(held) else {
@@ -263,10 +237,10 @@ where
                 Some(number) => format!("register {number} holds no offset that is known here"),
                 None => "the offset has no distance".to_owned(),
             };
-            return Err(fault(motion, message, REGISTER));
+            return Err(ContourError::at(motion, message, REGISTER));
         };
         if !distance.is_finite() {
-            return Err(fault(motion, "the offset is not a number", REGISTER));
+            return Err(ContourError::at(motion, "the offset is not a number", REGISTER));
         }
         let left = if side == Side::Left { distance } else { -distance };
         self.state = State::Starting { on: On { said, left, block: motion.block, spot: motion.spot } };
@@ -274,7 +248,7 @@ where
     }
 
     /// Gives out the wire's path beside a contour.
-    fn finish(&mut self, on: On, run: &Run) -> Result<(), CompensationError> {
+    fn finish(&mut self, on: On, run: &Run) -> Result<(), ContourError> {
         let done = run.beside(on.left, self.corners, on.block, on.spot)?;
         self.standing = Some(done.end);
         self.ready.extend(done.motions.into_iter().map(Ok));
@@ -283,20 +257,20 @@ where
     }
 
     /// A move begun where the wire stands: it leads out of an offset, or is any other.
-    fn begun_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, CompensationError> {
+    fn begun_where_it_stands(&mut self, mut motion: Motion) -> Result<Motion, ContourError> {
         let Act::Move { element, upper, .. } = &mut motion.act else { return Ok(motion) };
         let is_empty = matches!(element, Element::Line { start, end } if start == end);
         match (self.standing, *element) {
             (Some(at), element) if at != element.start() && !is_empty => {
                 let Element::Line { end, .. } = element else {
-                    return Err(fault(
+                    return Err(ContourError::at(
                         &motion,
                         "the move after the offset is switched off is not straight",
                         LEAD,
                     ));
                 };
                 if upper.is_some() {
-                    return Err(fault(
+                    return Err(ContourError::at(
                         &motion,
                         "the wire's upper end has a way of its own under an offset",
                         UPPER,
@@ -318,9 +292,9 @@ where
 impl<I, E> Iterator for Compensated<I>
 where
     I: Iterator<Item = Result<Motion, E>>,
-    E: Into<CompensationError>,
+    E: Into<ContourError>,
 {
-    type Item = Result<Motion, CompensationError>;
+    type Item = Result<Motion, ContourError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
@@ -349,15 +323,6 @@ where
     }
 }
 
-fn fault(motion: &Motion, message: impl Into<String>, help: &'static str) -> CompensationError {
-    CompensationError::Program {
-        message: message.into(),
-        block: motion.block,
-        spot: motion.spot,
-        help: Cow::Borrowed(help),
-    }
-}
-
 /// Blocks of a run held at most: a guess, far beyond any contour, and about 200 MB.
 const RUN_MOST: usize = 1_000_000;
 
@@ -365,4 +330,4 @@ const LEAD: &str =
     "a lead-in or lead-out must be a straight move in a block of its own beside G40, G41 or G42";
 const CHANGE: &str = "switch the offset off with G40 and a straight move out, then on again";
 const UPPER: &str = "offset both contours before they are joined, or cut with a taper angle";
-const REGISTER: &str = "give the distance of the register in mm";
+const REGISTER: &str = "say what the register of the control holds, in mm: --register N=MM";

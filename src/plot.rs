@@ -7,23 +7,26 @@
 //!
 //! However long the program is, memory and picture stay bounded; what is thinned says by how much. It reads no file.
 
+mod cuts;
 mod layer;
 mod marks;
+mod page;
 mod simulated;
 
 use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::check::contours::{Contours, Held, Run};
-use crate::drawing::{Align, Class, Extent, Outline, Picture, Shape, Sketch};
+use crate::drawing::{Class, Extent, Picture, Sketch};
 use crate::formats::three_b::Block;
-use crate::geometry::{Element, Point, Vector};
+use crate::geometry::{Element, Point};
 use crate::interpolator::{Fault, Model};
 use crate::motion::{Act, Motion, Stop, Travel};
 use crate::units::Micrometres;
 
+use cuts::{Cuts, grown, left};
 use layer::Layer;
-use marks::{Mark, Marks};
+use page::{ALONE_PEN, CUT_PEN, NOMINAL_PEN, PART_SPAN, Page};
 pub use simulated::Deviation;
 use simulated::Simulation;
 
@@ -88,17 +91,6 @@ impl Starts {
     }
 }
 
-/// The cuts as they are sorted out.
-#[derive(Debug)]
-struct Cuts {
-    nominal: Layer,
-    lead_in: Layer,
-    numbers: Marks,
-    heads: Marks,
-    /// The bounds of the contours.
-    part: Option<Extent>,
-}
-
 /// A plot that is done.
 #[derive(Clone, Debug)]
 #[must_use]
@@ -125,13 +117,7 @@ impl Plot {
     pub fn new(options: Options) -> Self {
         Self {
             contours: Contours::holding(HELD_MAX),
-            cuts: Cuts {
-                nominal: Layer::new(),
-                lead_in: Layer::new(),
-                numbers: options.numbers.map_or_else(|| Marks::up_to(NUMBERS_MAX), Marks::every),
-                heads: Marks::between(HEADS_MAX),
-                part: None,
-            },
+            cuts: Cuts::numbered(options.numbers),
             rapid: Layer::new(),
             wire: None,
             starts: Starts::default(),
@@ -281,7 +267,7 @@ impl Plot {
         }
         page.heads(&self.cuts.heads);
         page.numbers(&self.cuts.numbers);
-        page.starts(&self.starts);
+        page.starts(&self.starts.marked);
         if extent.is_some() {
             page.dimensions();
         }
@@ -302,217 +288,8 @@ impl Plot {
     }
 }
 
-impl Cuts {
-    /// Draws what a chain of cuts has come to.
-    fn draw(&mut self, run: &Run<'_>) {
-        match *run {
-            Run::Ring { ring, .. } => {
-                let origin = -ring[0].element.start().coords;
-                let doubled: f64 =
-                    ring.iter().map(|held| held.element.placed(0.0, 1.0, origin).doubled_area()).sum();
-                // Numbers stand outside: to the right of a contour that is run counter-clockwise.
-                let outside = if doubled > 0.0 { -1.0 } else { 1.0 };
-                for held in ring {
-                    self.contour(&held.element, held.block, left(&held.element) * outside);
-                }
-                self.nominal.end_run();
-            }
-            // Without a ring in its chain a cut is what is to be cut.
-            Run::Rest { held, rings: 0, .. } | Run::TooLong(held) => {
-                for held in held {
-                    self.contour(&held.element, held.block, left(&held.element));
-                }
-            }
-            Run::Retrace(held) | Run::Rest { held, .. } => {
-                for held in held {
-                    self.lead_in.add(&held.element);
-                    self.numbers.offer(mark(&held.element, held.block, left(&held.element)));
-                }
-            }
-        }
-    }
-
-    fn contour(&mut self, element: &Element, block: u64, aside: Vector) {
-        self.part = Some(grown(self.part, element));
-        self.nominal.add(element);
-        let mark = mark(element, block, aside);
-        self.numbers.offer(mark);
-        self.heads.offer(mark);
-    }
-}
-
-/// Bounds that hold an element too.
-fn grown(extent: Option<Extent>, element: &Element) -> Extent {
-    let [min, max] = element.extent();
-    let own = Extent::between([min.x, min.y], [max.x, max.y]);
-    extent.map_or(own, |all| all.united(own))
-}
-
-/// The middle of an element, and its direction there.
-fn mark(element: &Element, block: u64, aside: Vector) -> Mark {
-    Mark { block, at: element.at(0.5), heading: middle_heading(element), aside }
-}
-
-fn middle_heading(element: &Element) -> Vector {
-    match *element {
-        Element::Line { .. } => element.heading_at_start(),
-        Element::Arc { end, centre, sense, .. } => {
-            Element::Arc { start: element.at(0.5), end, centre, sense }.heading_at_start()
-        }
-    }
-}
-
-fn left(element: &Element) -> Vector {
-    let ahead = middle_heading(element);
-    Vector::new(-ahead.y, ahead.x)
-}
-
-/// The sketch, in model millimetres, with sizes in page millimetres where things have no size of their own.
-struct Page {
-    pen: f64,
-    /// What the program reaches.
-    seen: Extent,
-    /// What its contours reach.
-    part: Extent,
-    sketch: Sketch,
-}
-
-impl Page {
-    /// Draws lines by the class's own pen, or one of so many page millimetres.
-    fn lines(&mut self, class: Class, runs: Vec<Outline>, pen: Option<f64>) {
-        let width = pen.map(|pen| pen * self.pen);
-        self.sketch.extend(runs.into_iter().map(|run| {
-            let shape = Shape::path(class, run);
-            match width {
-                Some(width) => shape.wide(width),
-                None => shape,
-            }
-        }));
-    }
-
-    fn wide(&mut self, runs: &[Outline], width: f64) {
-        self.sketch.extend(runs.iter().map(|run| Shape::path(Class::Wire, run.clone()).wide(width)));
-    }
-
-    fn heads(&mut self, heads: &Marks) {
-        for mark in heads.clear_of_each_other(4.0 * HEAD_HALF * self.pen) {
-            // The head lies over the middle of its block.
-            let tip = mark.at + mark.heading * (HEAD_HALF * self.pen);
-            self.sketch.draw(Shape::head(Class::Direction, [tip.x, tip.y], [mark.heading.x, mark.heading.y]));
-        }
-    }
-
-    fn numbers(&mut self, numbers: &Marks) {
-        let height = Class::Label.style().letters;
-        for (mark, text, away) in numbers.apart(height, self.pen) {
-            let nudge = [mark.aside.x * away, mark.aside.y * away - height / 2.0];
-            self.sketch
-                .draw(Shape::text(Class::Label, [mark.at.x, mark.at.y], Align::Centre, text).nudged(nudge));
-        }
-    }
-
-    fn starts(&mut self, starts: &Starts) {
-        for at in &starts.marked {
-            self.sketch.draw(Shape::start([at.x, at.y]));
-        }
-        if let [only] = starts.marked[..] {
-            let text = Shape::text(Class::Label, [only.x, only.y], Align::Centre, "start");
-            self.sketch.draw(text.nudged([0.0, -5.0]));
-        }
-    }
-
-    /// Width below and height to the left, with the lines they are taken from.
-    fn dimensions(&mut self) {
-        let Extent { min, max } = self.part;
-        let (foot, side) = [1, 0].map(|axis| self.seen.min[axis] - DIMENSION_AWAY * self.pen).into();
-        for x in [min[0], max[0]] {
-            self.sketch.draw(Shape::line(Class::Dimension, [x, min[1]], [x, foot - self.pen]));
-        }
-        for y in [min[1], max[1]] {
-            self.sketch.draw(Shape::line(Class::Dimension, [min[0], y], [side - self.pen, y]));
-        }
-        let [width, height] = [self.part.width(), self.part.height()].map(|side| format!("{side:.3}"));
-        self.sketch.draw(Shape::dimension([min[0], foot], [max[0], foot], width));
-        self.sketch.draw(Shape::dimension([side, min[1]], [side, max[1]], height));
-    }
-
-    fn caption(&mut self, wire: Option<f64>, model: Option<Model>) {
-        let mut words = vec!["blue: as programmed".to_owned(), "orange: ways in and out".to_owned()];
-        if let Some(model) = model {
-            words.push(format!("black: pulses of the {} model", model.name()));
-        }
-        if let Some(width) = wire {
-            words.push(format!("wire {width} mm"));
-        }
-        let at = [self.seen.min[0], self.seen.min[1] - CAPTION_DOWN * self.pen];
-        self.sketch.draw(Shape::text(Class::Label, at, Align::Left, words.join(" · ")));
-    }
-
-    fn deviation(&mut self, deviation: &Deviation) {
-        let pen = self.pen;
-        let at = [deviation.at.x, deviation.at.y];
-        // In words above or below the part, whichever is nearer.
-        let is_above = at[1] >= self.seen.centre()[1];
-        let (foot, end, way) = if is_above {
-            let foot = self.seen.max[1] + DEVIATION_AWAY * pen;
-            (foot, foot - 1.2 * pen, 1.0)
-        } else {
-            let foot = self.seen.min[1] - DEVIATION_AWAY * pen - Class::Caption.style().letters * pen;
-            (foot, foot + (Class::Caption.style().letters + 1.2) * pen, -1.0)
-        };
-        self.sketch.draw(Shape::circle(Class::Callout, at, RING * pen));
-        let line = Shape::line(Class::Callout, [at[0], at[1] + way * RING * pen], [at[0], end]);
-        self.sketch.draw(line);
-        let text = format!("largest deviation {:.2} µm, block {}", deviation.um, deviation.block);
-        self.sketch.draw(Shape::text(Class::Caption, [at[0], foot], Align::Centre, text));
-    }
-
-    /// What the picture must show: the part, and what stands around it.
-    fn room(&self) -> Extent {
-        let Extent { min, max } = self.seen;
-        let pen = self.pen;
-        Extent {
-            min: [min[0] - (DIMENSION_AWAY + 8.0) * pen, min[1] - (CAPTION_DOWN + 1.0) * pen],
-            max: [max[0] + 6.0 * pen, max[1] + (DEVIATION_AWAY + 4.0) * pen],
-        }
-    }
-}
-
-/// The pen for what is programmed: broad enough to be seen on both sides of the cut on top.
-const NOMINAL_PEN: f64 = 0.5;
-
-/// The same with no cut on top.
-const ALONE_PEN: f64 = 0.25;
-
-/// The pen for the simulated cut.
-const CUT_PEN: f64 = 0.14;
-
-/// The larger side of the part on paper, millimetres.
-const PART_SPAN: f64 = 165.0;
-
-/// From the part to its dimension lines, page millimetres.
-const DIMENSION_AWAY: f64 = 13.0;
-
-/// From the part down to the caption's foot line, page millimetres.
-const CAPTION_DOWN: f64 = 20.0;
-
-/// From the part to the largest deviation in words, page millimetres.
-const DEVIATION_AWAY: f64 = 5.0;
-
-/// The radius of the ring round the largest deviation, page millimetres.
-const RING: f64 = 2.2;
-
-/// Half an arrow head, page millimetres.
-const HEAD_HALF: f64 = 1.3;
-
 /// Cuts that are held to tell a contour from the ways to it; some 30 MB.
 const HELD_MAX: usize = 200_000;
-
-/// The most block numbers when the page decides.
-const NUMBERS_MAX: usize = 40;
-
-/// The most arrow heads.
-const HEADS_MAX: usize = 16;
 
 /// The most start holes that are marked.
 const STARTS_MAX: usize = 2000;

@@ -5,6 +5,8 @@
 
 #[path = "gear/binary.rs"]
 mod binary;
+#[path = "cli/golden.rs"]
+mod golden;
 #[path = "cli/listings.rs"]
 mod listings;
 #[path = "cli/looking.rs"]

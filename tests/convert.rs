@@ -17,6 +17,8 @@ mod dialects;
 mod drawings;
 #[path = "convert/four_b.rs"]
 mod four_b;
+#[path = "cli/golden.rs"]
+mod golden;
 #[path = "convert/out.rs"]
 mod out;
 #[path = "convert/refusals.rs"]

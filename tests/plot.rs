@@ -14,7 +14,7 @@ mod theory;
 
 use mock_controller::interpolator::run;
 use mock_controller::{Model, parse_block};
-use svg::{Bounds, Svg};
+use svg::{Bounds, Mark, Svg};
 use tempfile::TempDir;
 use theory::{Direction, Gear, PAPER};
 
@@ -219,6 +219,28 @@ fn a_way_between_two_pauses_of_a_3b_program_is_drawn_as_rapid_and_each_hole_has_
     assert_eq!(svg.of("start").count(), 2);
     let between = [32.0, 0.0];
     assert!(svg.of("cut").all(|mark| mark.distance(between) > 5.0), "nothing is cut there");
+}
+
+#[test]
+fn the_wire_of_a_4b_program_is_drawn_where_the_keyed_in_offset_puts_it() {
+    // A die 10 mm wide with corners of 1 mm, led into from inside; the way back is the way there.
+    let die = "B0B4000B4000GYL4\nB4000B0B4000GXL1\nB0B1000B1000B1000DGYNR4\nB0B8000B8000GYL2\nB1000B0B1000B1000DGXNR1\n\
+               B8000B0B8000GXL3\nB0B1000B1000B1000DGYNR2\nB0B8000B8000GYL4\nB1000B0B1000B1000DGXNR3\n\
+               B4000B0B4000GXL1\nB0B4000B4000GYL2\nDD\n";
+    let wire = |words: &[&str]| {
+        let (svg, _) = plot("die.4b", die, words);
+        let width = svg.of("wire").find_map(|mark| mark.pen).expect("a wire");
+        (Bounds::of(svg.of("wire").flat_map(Mark::points)), width)
+    };
+    for (f, width) in [("-0.12", 0.24), ("0.07", 0.14)] {
+        let by: f64 = f.parse().unwrap();
+        let (found, pen) = wire(&["--offset", f]);
+        let expected = bounds([-5.0 - by, -4.0 - by], [5.0 + by, 6.0 + by]);
+        assert!(found.off_um(&expected) < 1.0, "{f}: {found:?}");
+        assert!((pen - width).abs() < 1e-9, "{f}: {pen}");
+    }
+    // Without it the programmed path is all that is known.
+    assert!(wire(&[]).0.off_um(&bounds([-5.0, -4.0], [5.0, 6.0])) < 1.0);
 }
 
 #[test]

@@ -22,6 +22,8 @@ pub struct Travel {
 pub(super) struct Reach {
     axes: [Axis; 2],
     first: Option<(u64, Spot)>,
+    /// What reaches so far.
+    what: &'static str,
 }
 
 #[derive(Debug)]
@@ -37,7 +39,25 @@ impl Reach {
     pub(super) fn new(travel: Travel) -> Self {
         // Every program begins at the origin.
         let axis = |name, travel| Axis { name, travel, low: 0.0, high: 0.0, is_told: false };
-        Self { axes: [axis('X', travel.x), axis('Y', travel.y)], first: None }
+        Self { axes: [axis('X', travel.x), axis('Y', travel.y)], first: None, what: "the program" }
+    }
+
+    /// How far the wire's own path reaches.
+    pub(super) fn of_wire(travel: Travel) -> Self {
+        Self { what: "the wire's path beside the program", ..Self::new(travel) }
+    }
+
+    /// In which axes more travel is needed than there is.
+    pub(super) fn beyond(&self) -> [bool; 2] {
+        [self.axes[0].is_told, self.axes[1].is_told]
+    }
+
+    /// Takes the next motion; in axes that are told already nothing more is told.
+    pub(super) fn see_beyond(&mut self, motion: &Motion, told: [bool; 2], tell: &mut impl FnMut(Finding)) {
+        for (axis, told) in self.axes.iter_mut().zip(told) {
+            axis.is_told |= told;
+        }
+        self.see(motion, tell);
     }
 
     pub(super) fn see(&mut self, motion: &Motion, tell: &mut impl FnMut(Finding)) {
@@ -59,8 +79,8 @@ impl Reach {
                         motion.spot,
                         motion.block,
                         format!(
-                            "with this block the program spans {span:.3} mm in {}, and the machine travels {travel} mm",
-                            axis.name
+                            "with this block {} spans {span:.3} mm in {}, and the machine travels {travel} mm",
+                            self.what, axis.name
                         ),
                     )
                     .help("turn the part, split it, or correct [travel] in the machine's profile"),

@@ -1,19 +1,33 @@
-//! The wire's own path, where the control sets it off the programmed one (G41, G42).
+//! The wire's own path, where the control sets it off the programmed one: by G41 and G42, or as keyed in for 4B.
 //!
-//! What the control would do is worked out by [`crate::compensation`]; here it is judged: an offset that cannot be done, a
-//! part of the contour that the wire cannot enter, and a path of the wire that crosses itself though the contour does not.
-//! How large an offset is often stands in a register of the control alone. Then nothing is claimed, and that is said.
+//! What the control would do is worked out by [`crate::compensation`] and [`crate::formats::four_b::offset`]; here it is
+//! judged: an offset that cannot be done, a part of the contour that the wire cannot enter, a path of the wire that crosses
+//! itself though the contour does not, or that needs more travel than the program.
+//! How large an offset is often stands in the control alone, in a register or keyed in. Where it is not given nothing is
+//! claimed, and that is said.
 
 use std::collections::BTreeMap;
 
 use super::Finding;
 use super::contours::{Contours, Run};
 use super::crossing::{Found, Stretch, search};
-use crate::compensation::{Compensated, CompensationError, Warning};
+use super::travel::{Reach, Travel};
+use crate::compensation::{Compensated, Warning};
 use crate::formats::ReadError;
+use crate::formats::four_b::offset::{Keyed, beside};
 use crate::geometry::offset::Corners;
+use crate::motion::runs::ContourError;
 use crate::motion::{Act, Motion, Offset};
 use crate::place::Spot;
+
+/// What a control knows of its wire besides the program.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Known {
+    /// What its offset registers hold, mm.
+    Registers(BTreeMap<u32, f64>),
+    /// What is keyed into it for 4B.
+    Keyed(Keyed),
+}
 
 /// What comes of following the wire.
 #[derive(Debug)]
@@ -25,7 +39,7 @@ pub enum Seen<'a> {
     /// The wire cannot enter a part of the contour.
     Passed(&'a Warning),
     /// The offset cannot be done.
-    Failed(&'a CompensationError),
+    Failed(&'a ContourError),
     /// A register holds the distance, and what it holds is not known; the wire is followed no further.
     Unknown(u32),
 }
@@ -40,12 +54,31 @@ pub enum Looked {
     Whole,
     /// It was not, for want of what this register of the control holds.
     Unknown(u32),
+    /// It was not, for want of the offset that is keyed in.
+    NotKeyed,
 }
 
-/// Follows motions and beside them the wire, with what the registers of the control hold, mm.
+/// Follows motions and beside them the wire, with what the control knows.
 ///
 /// `next` gives the program's motions, to its end; `show` is told what comes of each.
-pub fn follow(
+pub fn follow(mut next: impl FnMut() -> Option<Motion>, known: &Known, mut show: impl FnMut(&Seen<'_>)) {
+    match known {
+        Known::Registers(registers) => follow_registers(next, registers, show),
+        Known::Keyed(keyed) => {
+            show(&Seen::Switched);
+            let source = std::iter::from_fn(|| next().map(Ok::<_, ReadError>));
+            for motion in beside(source, *keyed) {
+                match &motion {
+                    Ok(motion) => show(&Seen::Motion(motion)),
+                    Err(error) => show(&Seen::Failed(error)),
+                }
+            }
+            while next().is_some() {}
+        }
+    }
+}
+
+fn follow_registers(
     next: impl FnMut() -> Option<Motion>,
     registers: &BTreeMap<u32, f64>,
     mut show: impl FnMut(&Seen<'_>),
@@ -82,61 +115,74 @@ pub fn follow(
 }
 
 /// Judges the wire's path.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Wire {
     looked: Looked,
     contours: Contours,
-    /// Blocks at which the programmed path crosses itself.
+    reach: Reach,
+    /// Blocks at which the programmed path crosses itself, or has a corner that 4B cannot have.
     told: Vec<u64>,
 }
 
 impl Wire {
+    pub(super) fn new(travel: Travel) -> Self {
+        let reach = Reach::of_wire(travel);
+        Self { looked: Looked::default(), contours: Contours::default(), reach, told: Vec::new() }
+    }
+
     pub(super) fn looked(&self) -> Looked {
         self.looked
     }
 
+    /// Takes a motion of the program itself: one with 4B's flag is for an offset that is keyed in.
+    pub(super) fn see_programmed(&mut self, motion: &Motion) {
+        if self.looked == Looked::NoOffset && matches!(motion.act, Act::Move { flag: Some(_), .. }) {
+            self.looked = Looked::NotKeyed;
+        }
+    }
+
     /// Remembers what was found in the programmed path, which the wire's path repeats.
     pub(super) fn note(&mut self, finding: &Finding) {
-        if finding.code == "crossing" && self.told.len() < TOLD_MAX {
+        if matches!(finding.code, "crossing" | "not-tangent") && self.told.len() < TOLD_MAX {
             self.told.push(finding.block);
         }
     }
 
-    pub(super) fn see(&mut self, seen: &Seen<'_>, tell: &mut impl FnMut(Finding)) {
+    /// `beyond` says in which axes the program itself needs more travel than there is.
+    pub(super) fn see(&mut self, seen: &Seen<'_>, beyond: [bool; 2], tell: &mut impl FnMut(Finding)) {
         match *seen {
             Seen::Switched => self.looked = Looked::Whole,
             Seen::Unknown(register) => self.looked = Looked::Unknown(register),
             Seen::Motion(motion) => {
-                let Self { contours, told, .. } = self;
+                let Self { contours, told, reach, .. } = self;
+                reach.see_beyond(motion, beyond, tell);
                 contours.see(motion, Default::default(), Default::default(), &mut |run| {
                     crossings(&run, told, tell);
                 });
             }
-            Seen::Passed(Warning { block, spot, unreached, .. }) => {
-                let message = format!(
-                    "the wire does not reach the contour at {:.3}, {:.3} mm: the offset is too large",
-                    unreached.at.x, unreached.at.y
-                );
-                let help = format!("the largest offset that reaches it is {:.3} mm", unreached.largest);
-                tell(Finding::error("offset-too-large", *spot, *block, message).help(help));
+            Seen::Passed(warning) => {
+                let Warning { block, spot, .. } = *warning;
+                tell(Finding::error("offset-too-large", spot, block, warning.message()).help(warning.help()));
             }
-            Seen::Failed(CompensationError::Program { message, block, spot, help }) => {
+            // A corner that 4B cannot have is told by whoever looks for corners.
+            Seen::Failed(ContourError::Contour { block, .. }) if self.told.contains(block) => {}
+            Seen::Failed(ContourError::Contour { message, block, spot, help }) => {
                 tell(Finding::error("offset-fails", *spot, *block, message.clone()).help(help.clone()));
             }
             // What cannot be read is told by whoever reads.
-            Seen::Failed(CompensationError::Read(_)) => {}
+            Seen::Failed(ContourError::Read(_)) => {}
         }
     }
 
     pub(super) fn finish(&mut self, tell: &mut impl FnMut(Finding)) {
-        let Self { contours, told, looked } = self;
+        let Self { contours, told, looked, .. } = self;
         if *looked != Looked::NoOffset {
             contours.finish(&mut |run| crossings(&run, told, tell));
         }
     }
 }
 
-/// Crossings of the programmed path that are remembered.
+/// Blocks that are remembered.
 const TOLD_MAX: usize = 1000;
 
 fn crossings(run: &Run<'_>, told: &[u64], tell: &mut impl FnMut(Finding)) {

@@ -21,7 +21,7 @@ use serde_json::json;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
-use super::registers::Registers;
+use super::registers::{self, KeyedIn, Registers};
 use super::{machines, print, print_json};
 use crate::check::{Check, Finding, Format, Kept, Looked, Report, Settings, Severity, wire};
 use crate::drawing::finding as drawing;
@@ -38,6 +38,8 @@ pub(super) struct Options {
     input: String,
     #[command(flatten)]
     registers: Registers,
+    #[command(flatten)]
+    keyed: KeyedIn,
     /// The machine to check against: a built-in profile or a file [default: generic-iso]
     #[arg(long, value_name = "NAME|FILE")]
     machine: Option<String>,
@@ -125,12 +127,14 @@ fn check(motions: &mut Motions, options: &Options, profile: Profile) -> Result<R
         let (message, help) = (found.to_string(), found.help.clone());
         check.add(Finding { severity, code: found.code, spot, width: 0, block: 0, message, help });
     }
-    if motions.kind == Kind::Gcode {
-        let check = RefCell::new(&mut check);
-        let next = || next_of(motions, &mut check.borrow_mut());
-        wire::follow(next, &options.registers.held(), |seen| check.borrow_mut().see_wire(seen));
-    } else {
-        while next_of(motions, &mut check).is_some() {}
+    let keyed = options.keyed.of(&options.input, motions.kind)?;
+    match registers::known(motions.kind, &options.registers, keyed) {
+        Some(known) => {
+            let check = RefCell::new(&mut check);
+            let next = || next_of(motions, &mut check.borrow_mut());
+            wire::follow(next, &known, |seen| check.borrow_mut().see_wire(seen));
+        }
+        None => while next_of(motions, &mut check).is_some() {},
     }
     // G-code goes out line by line as it stands.
     motions.lines(|line, block| check.see_text(line.bytes, block, line.spot(0)))?;
@@ -204,6 +208,7 @@ fn as_json(report: &Report, options: &Options) -> serde_json::Value {
         Looked::NoOffset => json!("as programmed"),
         Looked::Whole => json!("checked"),
         Looked::Unknown(register) => json!({"unknown_register": register}),
+        Looked::NotKeyed => json!("unknown_offset"),
     };
     if let Some(models) = report.models.filter(|_| !report.unreadable) {
         let models = models.map(|account| {
@@ -248,6 +253,11 @@ fn account(report: &Report, name: &str, options: &Options) -> String {
         text.push_str(&format!(
             "the wire's own path was not checked: what register {register} holds is not given (--register {register}=MM)\n"
         ));
+    }
+    if report.wire == Looked::NotKeyed && !report.unreadable {
+        text.push_str(
+            "the wire's own path was not checked: the offset that is keyed into the control is not given (--offset MM)\n",
+        );
     }
     if let Some(models) = report.models.filter(|_| !report.unreadable) {
         for account in models {

@@ -19,10 +19,11 @@ use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
 use super::motions::{Motions, OfPart, Reading};
-use super::registers::Registers;
+use super::registers::{self, KeyedIn, Registers};
 use super::{print, print_json};
-use crate::check::wire::{self, Seen};
+use crate::check::wire::{self, Known, Seen};
 use crate::drawing::Extent;
+use crate::formats::four_b::offset::Keyed;
 use crate::interpolator::Model;
 use crate::plot::{Options as What, Plot, Plotted};
 
@@ -37,6 +38,8 @@ pub(super) struct Options {
     output: PathBuf,
     #[command(flatten)]
     registers: Registers,
+    #[command(flatten)]
+    keyed: KeyedIn,
     /// The wire's diameter; 0 draws no wire [default: 0.18]
     #[arg(long, value_name = "MM", value_parser = diameter)]
     wire: Option<f64>,
@@ -86,7 +89,8 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         // A drawing that cannot be cut as it is can be looked at.
         say!("{}", fault.render().trim_end());
     }
-    let wire = options.wire.or_else(|| kerf(&motions)).unwrap_or_else(|| {
+    let keyed = options.keyed.of(&options.input, motions.kind)?;
+    let wire = options.wire.or_else(|| kerf(&motions, keyed)).unwrap_or_else(|| {
         say!("the wire's diameter is not given: {WIRE_MM} mm is drawn (--wire MM)");
         WIRE_MM
     });
@@ -98,7 +102,8 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         numbers: options.numbers,
         simulated,
     });
-    let blocks = draw(&mut motions, &mut plot, &options.registers)?;
+    let known = registers::known(motions.kind, &options.registers, keyed);
+    let blocks = draw(&mut motions, &mut plot, known.as_ref())?;
     let plotted = plot.finish();
     if plotted.extent.is_none() {
         return Err(moves_nothing(&motions.places.name));
@@ -126,53 +131,45 @@ pub(super) fn moves_nothing(name: &str) -> Failure {
 }
 
 /// Draws every motion; returns how many blocks there are.
-fn draw(motions: &mut Motions, plot: &mut Plot, registers: &Registers) -> Result<u64, Failure> {
+fn draw(motions: &mut Motions, plot: &mut Plot, known: Option<&Known>) -> Result<u64, Failure> {
     let mut blocks = 0;
-    if motions.kind != Kind::Gcode {
-        while let Some(motion) = motions.next() {
-            let motion = motion.map_err(|error| Failure::read(&motions.places.name, error))?;
-            blocks = motion.block;
-            plot.see(&motion, motions.block().as_ref()).map_err(|fault| {
-                let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
-                failure.help("simulate another model with --interpolator, or none with --no-simulation")
-            })?;
+    let mut failed = None;
+    let plot = RefCell::new(plot);
+    let mut next = || {
+        let motion = match motions.next()? {
+            Ok(motion) => motion,
+            Err(error) => {
+                failed = Some(Failure::read(&motions.places.name, error));
+                return None;
+            }
+        };
+        blocks = motion.block;
+        if let Err(fault) = plot.borrow_mut().see(&motion, motions.block().as_ref()) {
+            let failure = Failure::new(Exit::Program, format!("block {blocks}: {fault}"));
+            let help = "simulate another model with --interpolator, or none with --no-simulation";
+            failed = Some(failure.help(help));
+            return None;
         }
-        if motions.kind == Kind::FourB {
-            say!("the offset is keyed in at the control: the wire is drawn on the programmed path");
-        }
-        return Ok(blocks);
-    }
-    let (plot, mut failed) = (RefCell::new(plot), None);
-    let next = || match motions.next()? {
-        Ok(motion) => {
-            blocks = motion.block;
-            // G-code has no blocks whose pulses could be run, so nothing can fail.
-            let _ = plot.borrow_mut().see(&motion, None);
-            Some(motion)
-        }
-        Err(error) => {
-            failed = Some(Failure::read(&motions.places.name, error));
-            None
-        }
+        Some(motion)
     };
     let mut doubt = None;
     let mut is_offset = false;
-    wire::follow(next, &registers.held(), |seen| match seen {
-        Seen::Switched => is_offset = true,
-        Seen::Motion(motion) => plot.borrow_mut().see_wire(motion),
-        Seen::Passed(warning) => {
-            say!(
-                "block {}: the wire does not reach the contour at {:.3}, {:.3} mm",
-                warning.block,
-                warning.unreached.at.x,
-                warning.unreached.at.y
-            );
-        }
-        Seen::Failed(error) => doubt = Some(error.to_string()),
-        Seen::Unknown(register) => {
-            doubt = Some(format!("what register {register} holds is not given (--register {register}=MM)"));
-        }
-    });
+    match known {
+        None => while next().is_some() {},
+        Some(known) => wire::follow(next, known, |seen| match seen {
+            Seen::Switched => is_offset = true,
+            Seen::Motion(motion) => plot.borrow_mut().see_wire(motion),
+            Seen::Passed(warning) => say!("warning: {warning}"),
+            Seen::Failed(error) => doubt = Some(error.to_string()),
+            Seen::Unknown(register) => {
+                doubt =
+                    Some(format!("what register {register} holds is not given (--register {register}=MM)"));
+            }
+        }),
+    }
+    if known.is_none() && motions.kind == Kind::FourB {
+        doubt = Some("the offset that is keyed into the control is not given (--offset MM)".to_owned());
+    }
     if let Some(failure) = failed {
         return Err(failure);
     }
@@ -211,9 +208,10 @@ fn diameter(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What a part's own offset takes away.
-fn kerf(motions: &Motions) -> Option<f64> {
-    motions.part().map(|part| 2.0 * part.offset.abs())
+/// What a part's own offset takes away, or one that is keyed in.
+fn kerf(motions: &Motions, keyed: Option<Keyed>) -> Option<f64> {
+    let offset = motions.part().map(|part| part.offset).or(keyed.map(|keyed| keyed.offset));
+    offset.map(|offset| 2.0 * offset.abs())
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

@@ -1,8 +1,13 @@
-//! What the offset registers of the control hold: no program says it where it says `D1`.
+//! What the control holds and no program says: its offset registers, where it says `D1`, and what is keyed in for 4B.
 
 use std::collections::BTreeMap;
 
 use clap::Args;
+
+use super::failure::{Exit, Failure};
+use super::kind::Kind;
+use crate::check::wire::Known;
+use crate::formats::four_b::offset::Keyed;
 
 /// The offset registers.
 #[derive(Args, Clone, Debug, Default)]
@@ -16,6 +21,50 @@ impl Registers {
     /// Each register, mm.
     pub(super) fn held(&self) -> BTreeMap<u32, f64> {
         self.register.iter().copied().collect()
+    }
+}
+
+/// What is keyed into the control for a 4B program.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(super) struct KeyedIn {
+    /// F, the offset keyed into the control of a 4B program, mm: positive outside the outline, negative inside
+    #[arg(long, value_name = "MM", value_parser = distance, allow_negative_numbers = true)]
+    offset: Option<f64>,
+    /// A of a 4B program, how far its taper sets the wire's upper end off, mm
+    #[arg(long, value_name = "MM", value_parser = distance, allow_negative_numbers = true)]
+    taper: Option<f64>,
+}
+
+impl KeyedIn {
+    /// What is keyed in for a program of a kind; none where nothing is said.
+    pub(super) fn of(self, input: &str, kind: Kind) -> Result<Option<Keyed>, Failure> {
+        if self.offset.is_none() && self.taper.is_none() {
+            return Ok(None);
+        }
+        if kind != Kind::FourB {
+            let message =
+                format!("--offset and --taper are keyed in for 4B, and {input} is {}", kind.title());
+            return Err(Failure::new(Exit::Usage, message)
+                .help("leave them out; G-code has --register, and convert puts an offset on any program"));
+        }
+        Ok(Some(Keyed { offset: self.offset.unwrap_or(0.0), taper: self.taper }))
+    }
+}
+
+/// What the control knows of its wire besides a program of a kind; none where there is nothing to know.
+pub(super) fn known(kind: Kind, registers: &Registers, keyed: Option<Keyed>) -> Option<Known> {
+    match kind {
+        Kind::Gcode | Kind::Macro => Some(Known::Registers(registers.held())),
+        Kind::FourB => keyed.map(Known::Keyed),
+        Kind::ThreeB | Kind::Dxf | Kind::Part => None,
+    }
+}
+
+/// An offset as it is said on the command line, mm.
+pub(super) fn distance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.abs() <= DISTANCE_MAX => Ok(value),
+        _ => Err("an offset is a length in mm, up to 100".to_owned()),
     }
 }
 

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::{CompensationError, Fate, Warning, local};
+use super::{Fate, Warning, local};
 use crate::geometry::offset::{Corners, Impossible, Origin, Unreached, offset};
 use crate::geometry::{Element, Path, Point};
+use crate::motion::runs::ContourError;
 use crate::motion::{Act, Motion};
 use crate::place::Spot;
 
@@ -61,8 +62,8 @@ impl Run {
         corners: Corners,
         block: u64,
         spot: Spot,
-    ) -> Result<Done, CompensationError> {
-        let at_switch = |message: &str, help: &'static str| CompensationError::Program {
+    ) -> Result<Done, ContourError> {
+        let at_switch = |message: &str, help: &'static str| ContourError::Contour {
             message: message.to_owned(),
             block,
             spot,
@@ -119,12 +120,7 @@ impl Run {
     }
 
     /// A closed contour, offset as one; none where it is open or meets itself.
-    fn as_a_whole(
-        &self,
-        path: &Path,
-        left: f64,
-        corners: Corners,
-    ) -> Result<Option<Beside>, CompensationError> {
+    fn as_a_whole(&self, path: &Path, left: f64, corners: Corners) -> Result<Option<Beside>, ContourError> {
         if !path.is_closed() {
             return Ok(None);
         }
@@ -157,7 +153,7 @@ impl Run {
     ///
     /// In an outline that the run goes round once that is certain, and refused. In a run that never comes back to where
     /// it was, it may be a lead in the waste, and is told.
-    fn cut_into(&self, path: &Path, left: f64) -> Result<Vec<Warning>, CompensationError> {
+    fn cut_into(&self, path: &Path, left: f64) -> Result<Vec<Warning>, ContourError> {
         let Some(outline) = self.outline() else {
             // What crosses itself is not judged here.
             let Ok(found) = offset(path, left, Corners::Round) else { return Ok(Vec::new()) };
@@ -198,25 +194,16 @@ impl Run {
         Warning { block: motion.block, spot: motion.spot, unreached, fate }
     }
 
-    fn corner_by_corner(
-        &self,
-        left: f64,
-        corners: Corners,
-    ) -> Result<Vec<(Element, Origin)>, CompensationError> {
+    fn corner_by_corner(&self, left: f64, corners: Corners) -> Result<Vec<(Element, Origin)>, ContourError> {
         local::beside(&self.elements, left, corners).map_err(|vanishes| {
             let message = format!("an offset of {:.4} mm leaves nothing of this element", left.abs());
             self.fault(vanishes.0, message, THINNER)
         })
     }
 
-    fn fault(&self, element: usize, message: String, help: &'static str) -> CompensationError {
+    fn fault(&self, element: usize, message: String, help: &'static str) -> ContourError {
         let motion = &self.moves[element];
-        CompensationError::Program {
-            message,
-            block: motion.block,
-            spot: motion.spot,
-            help: Cow::Borrowed(help),
-        }
+        ContourError::Contour { message, block: motion.block, spot: motion.spot, help: Cow::Borrowed(help) }
     }
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::formats::ReadError;
 use crate::geometry::{Path, Sense};
 use crate::motion::Travel;
 
@@ -31,11 +32,11 @@ fn program(side: Side, distance: f64, nodes: &[(f64, f64)]) -> Vec<Result<Motion
     all
 }
 
-fn compensate(motions: Vec<Result<Motion, ReadError>>) -> Vec<Result<Motion, CompensationError>> {
+fn compensate(motions: Vec<Result<Motion, ReadError>>) -> Vec<Result<Motion, ContourError>> {
     Compensated::new(motions.into_iter(), BTreeMap::from([(7, 0.25)]), Corners::Round).collect()
 }
 
-fn elements(motions: Vec<Result<Motion, CompensationError>>) -> Vec<(u64, Element)> {
+fn elements(motions: Vec<Result<Motion, ContourError>>) -> Vec<(u64, Element)> {
     motions
         .into_iter()
         .filter_map(|motion| match motion.unwrap() {
@@ -54,7 +55,7 @@ fn nodes(elements: &[(u64, Element)]) -> Vec<(f64, f64)> {
 
 fn message(motions: Vec<Result<Motion, ReadError>>) -> (u64, String) {
     match compensate(motions).pop() {
-        Some(Err(CompensationError::Program { block, message, .. })) => (block, message),
+        Some(Err(ContourError::Contour { block, message, .. })) => (block, message),
         other => panic!("{other:?}"),
     }
 }

@@ -58,6 +58,16 @@ pub(super) fn nearest_within(way: &Element, others: &[Element], within: f64) -> 
     near.filter(|near| near.distance < within).min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
+/// The points that two elements share, but for those along which they run together.
+pub(super) fn crossings(a: &Element, b: &Element) -> impl Iterator<Item = Point> {
+    let (a, b) = (*a, *b);
+    let is_on = move |at: &Point| a.distance(*at).max(b.distance(*at)) <= ON;
+    shared(&a, &b).into_iter().flatten().filter(is_on)
+}
+
+/// A point so near to an element is on it, mm: what working it out may be off by.
+const ON: f64 = 1e-6;
+
 /// The points in which the whole lines or circles of two elements meet.
 fn shared(a: &Element, b: &Element) -> [Option<Point>; 2] {
     match (*a, *b) {

@@ -301,8 +301,9 @@ pub(super) fn check_numbers(plan: &Plan) -> Result<(), Refusal> {
                 }
             }
         }
-        if !within(pass.distance.offset(), SMALLEST_OFFSET) {
-            return refuse("the offset", pass.distance.offset(), "0.001 to 100000 mm");
+        let offset = pass.distance.offset();
+        if !(offset == 0.0 || within(offset, SMALLEST_OFFSET)) {
+            return refuse("the offset", offset, "0, or 0.001 to 100000 mm");
         }
     }
     for lead in std::iter::once(plan.lead_in).chain(plan.lead_out) {

@@ -1,12 +1,12 @@
 //! One contour's jobs as motions, each way through the waste checked before it is given out.
 
-use super::clearance::{between, nearest_within};
+use super::clearance::{Nearest, between, crossings, nearest_within};
 use super::division::{Division, Piece};
 use super::jobs::{Begin, Job, What, jobs};
 use super::lead::{Stand, Way, inwards, on_grid, outwards, rounded};
 use super::refusal::{Fault, Lane, Refusal, check_point};
 use super::summary::{ContourSummary, PassSummary, TabSummary};
-use super::track::{Position, Track, begun_nearest, point_at};
+use super::track::{self, Position, Track, begun_nearest, point_at};
 use super::{Contour, Entry, Holes, Kept, Plan};
 use crate::geometry::offset::offset;
 use crate::geometry::{Element, Path, Point, Vector};
@@ -115,7 +115,8 @@ impl Cutter<'_> {
     fn lay_tracks(&mut self) -> Result<(), Refusal> {
         for (n, pass) in self.plan.passes().enumerate() {
             let by = pass.distance.offset();
-            let left = if self.summary.side == Side::Left { by } else { -by };
+            let side = self.summary.side;
+            let left = if side == Side::Left { by } else { -by };
             let found = offset(&self.course, left, self.plan.corners)
                 .map_err(|reason| self.refusal(None, Fault::Impossible { pass: n + 1, reason }))?;
             let outline = match found.outlines.as_slice() {
@@ -129,15 +130,16 @@ impl Cutter<'_> {
                     return Err(self.refusal(Some(at), fault));
                 }
             };
-            let track =
-                Track::new(&self.course, &outline.path, left, &self.division.marks).map_err(|lost| {
+            let track = Track::new(&self.course, &outline.path, (side, by), &self.division.marks).map_err(
+                |lost| {
                     let fault = match lost.mark {
                         0 => Fault::EntryLost { pass: n + 1 },
                         _ => Fault::TabLost { pass: n + 1 },
                     };
                     self.refusal(Some(lost.at), fault)
-                })?;
-            let kerf = pass.distance.kerf_radius() - TOUCH;
+                },
+            )?;
+            let kerf = (pass.distance.kerf_radius() - TOUCH).max(CROSSES);
             for (other, contour) in self.contours.iter().enumerate().filter(|(n, _)| *n != self.number) {
                 let elements = contour.path.elements();
                 if !near(&self.course, &contour.path, by + kerf) {
@@ -247,7 +249,10 @@ impl Cutter<'_> {
                 self.thread(self.summary.holes[stretch]);
             }
             if let Some(stop) = job.stop {
-                self.acts.push(Act::Stop(stop));
+                // Where threading ends with such a stop the control stands already.
+                if self.acts.last() != Some(&Act::Stop(stop)) {
+                    self.acts.push(Act::Stop(stop));
+                }
                 self.summary.stops += 1;
             }
             if said != Some(job.pass) || matches!(job.begin, Begin::Thread { .. }) {
@@ -336,7 +341,7 @@ impl Cutter<'_> {
 
     /// Refuses a way through the waste that cuts into a part, or into a tab that still holds it.
     fn check(&self, way: &Element, lane: Lane, passes: [usize; 2]) -> Result<(), Refusal> {
-        let offset = passes.map(|pass| self.tracks[pass].left.abs());
+        let offset = passes.map(|pass| self.tracks[pass].by);
         let offset = offset[0].min(offset[1]);
         let kerf = passes.map(|pass| self.plan.passes().nth(pass).map_or(0.0, |p| p.distance.kerf_radius()));
         let kerf = kerf[0].max(kerf[1]);
@@ -344,20 +349,34 @@ impl Cutter<'_> {
             let own = other == self.number;
             let (elements, least) =
                 if own { (self.course.elements(), offset) } else { (contour.path.elements(), kerf) };
-            let within = least - TOUCH.min(least / 2.0);
-            if let Some(hit) = nearest_within(way, elements, within) {
+            let hit = if own && least == 0.0 {
+                self.into_part(way)
+            } else {
+                nearest_within(way, elements, (least - TOUCH.min(least / 2.0)).max(CROSSES))
+            };
+            if let Some(hit) = hit {
                 let fault = Fault::CutsPart { lane, other: other + 1, distance: hit.distance, least };
                 return Err(self.refusal(Some(hit.at), fault));
             }
         }
         for (n, (mark, line)) in self.uncut.iter().enumerate() {
             let hit = between(way, line);
-            if hit.distance < self.plan.rough.distance.kerf_radius() - TOUCH {
+            if hit.distance < (self.plan.rough.distance.kerf_radius() - TOUCH).max(CROSSES) {
                 let tab = self.division.of_kind(Piece::Tab).position(|at| at == *mark).unwrap_or(n) + 1;
                 return Err(self.refusal(Some(hit.at), Fault::CutsTab { lane, tab }));
             }
         }
         Ok(())
+    }
+
+    /// Where a way to or from the very contour leads through the part.
+    fn into_part(&self, way: &Element) -> Option<Nearest> {
+        let is_end = |at: Point| [way.start(), way.end()].iter().any(|end| (end - at).norm() <= 2.0 * TOUCH);
+        let crossed = self.course.elements().iter().flat_map(|element| crossings(way, element));
+        let middle = way.at(0.5);
+        let in_part = self.course.contains(middle) == (self.summary.kept == Kept::Inside);
+        let at = crossed.into_iter().find(|at| !is_end(*at)).or(in_part.then_some(middle));
+        at.map(|at| Nearest { distance: 0.0, at })
     }
 
     fn go(&mut self, travel: Travel, element: Element) {
@@ -385,7 +404,7 @@ impl Cutter<'_> {
             (Towards::Leaving, true) | (Towards::Arriving, false) => track.leaving(place),
             (Towards::Arriving, true) | (Towards::Leaving, false) => track.arriving(place),
         };
-        let waste_left = (track.left > 0.0) == forwards;
+        let waste_left = (track.side == Side::Left) == forwards;
         let heading = if forwards { heading } else { -heading };
         Stand { at, heading, away: self.away(at, heading, pass, forwards), waste_left }
     }
@@ -398,8 +417,15 @@ impl Cutter<'_> {
         for element in self.course.elements() {
             let from = at - element.nearest(at);
             let distance = from.norm();
-            if distance <= track.left.abs() + TOUCH && distance > 0.0 {
-                let direction = from / distance;
+            if distance <= track.by + TOUCH {
+                // On the contour itself it is square to it.
+                let direction = if distance > TOUCH.min(track.by / 2.0) {
+                    from / distance
+                } else {
+                    let along = track::heading(element, element.nearest(at));
+                    let left = Vector::new(-along.y, along.x);
+                    if track.side == Side::Left { left } else { -left }
+                };
                 // Neighbours that share the nearest point say the same thing twice.
                 if (sum - direction).norm() > 1e-3 {
                     sum += direction;
@@ -410,7 +436,7 @@ impl Cutter<'_> {
             return sum.normalize();
         }
         let left = Vector::new(-heading.y, heading.x);
-        if (track.left > 0.0) == forwards { left } else { -left }
+        if (track.side == Side::Left) == forwards { left } else { -left }
     }
 }
 
@@ -435,3 +461,5 @@ fn near(one: &Path, other: &Path, within: f64) -> bool {
 
 /// Ways may come nearer than they must by as much, mm: the rounding of their nodes, at most half a micron in X and in Y.
 const TOUCH: f64 = 0.75e-3;
+/// Ways so near to each other cross, mm: a nanometre.
+const CROSSES: f64 = 1e-6;

@@ -123,9 +123,11 @@ impl fmt::Display for ContourSummary {
             writeln!(f, "  tab {}: {from} to {to}, {length:.3} mm, holds by {bridge:.3} mm", n + 1)?;
         }
         let Self { moves, cut, rapid, threadings, stops, .. } = self;
+        let threaded = if *threadings == 1 { "once".to_owned() } else { format!("{threadings} times") };
+        let stops = if *stops == 1 { "1 stop".to_owned() } else { format!("{stops} stops") };
         writeln!(
             f,
-            "  {moves} moves, {cut:.3} mm cut, {rapid:.3} mm rapid, threaded {threadings} times, {stops} stops before tabs"
+            "  {moves} moves, {cut:.3} mm cut, {rapid:.3} mm rapid, threaded {threaded}, {stops} before tabs"
         )
     }
 }

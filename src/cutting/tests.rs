@@ -407,3 +407,47 @@ fn a_plan_is_written_as_3b_and_as_gcode() {
         assert!(text.contains(word), "{word} in {text}");
     }
 }
+
+/// 10 mm square, to be led into from outside.
+fn square() -> Contour {
+    contour(rectangle(p(0.0, 0.0), p(10.0, 10.0)), Kept::Inside, Holes::AtLeadIn)
+}
+
+#[test]
+fn with_an_offset_of_nothing_the_wire_runs_on_the_line_and_its_leads_keep_out_of_the_part() {
+    for (kept, hole) in [(Kept::Inside, p(-2.0, -2.0)), (Kept::Outside, p(2.0, 2.0))] {
+        let square = Contour { kept, ..square() };
+        let plan = Plan { rough: pass(0.0, "C1"), ..plan() };
+        let cutting = Cutting::new(vec![square.clone()], plan.clone()).unwrap();
+        let shown = cutting.summary().to_string();
+        assert!(shown.contains("offset 0.0000 mm, path 40.000 mm, cut 40.000 mm"), "{shown}");
+        // The lead halves the angle of the corner at which the contour begins, in the waste.
+        let lead = hole * std::f64::consts::FRAC_1_SQRT_2;
+        let started = cutting.summary().contours[0].holes[0];
+        assert!((started - lead).norm() < 1e-3, "{kept:?}: {started}");
+        let through = Contour { holes: Holes::Given(vec![p(-hole.x, -hole.y)]), ..square };
+        let error = refusal(&[through], &Plan { lead_in: Lead::Direct, lead_out: None, ..plan });
+        assert!(matches!(error.fault, Fault::HoleInPart { .. }), "{error}");
+    }
+    // Led in from a hole in the waste, but through the part.
+    let far = Contour { entry: Entry::Beginning, holes: Holes::Given(vec![p(5.0, 12.0)]), ..square() };
+    let direct = Plan { rough: pass(0.0, "C1"), lead_in: Lead::Direct, lead_out: None, ..plan() };
+    let error = refusal(&[far], &direct);
+    assert!(matches!(error.fault, Fault::CutsPart { lane: Lane::LeadIn, .. }), "{error}");
+}
+
+#[test]
+fn a_stop_before_a_tab_is_said_once_where_threading_ends_with_one() {
+    let stop = || vec![Act::Stop(Stop::Pause)];
+    let plan = Plan {
+        tabs: Tabs::Even { count: 2, length: 1.0 },
+        rethread: Rethread { cut: stop(), thread: stop() },
+        stops: Stops::BeforeEach(Stop::Pause),
+        ..plan()
+    };
+    let motions = motions(&[square()], &plan);
+    let twice = motions.windows(2).filter(|pair| pair[0].act == pair[1].act).count();
+    assert_eq!(twice, 0, "{motions:?}");
+    // Cut, threaded and cut again: each tab is cut behind a stop of its own all the same.
+    assert_eq!(Cutting::new(vec![square()], plan).unwrap().summary().contours[0].stops, 2);
+}

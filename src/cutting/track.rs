@@ -5,6 +5,7 @@
 
 use super::clearance::nearest_within;
 use crate::geometry::{Element, Path, Point, Sense, Vector, sweep};
+use crate::motion::Side;
 
 /// The path of one pass, begun beside the contour's beginning, with the places beside the contour's marks.
 #[derive(Clone, Debug)]
@@ -15,8 +16,10 @@ pub(super) struct Track {
     pub(super) length: f64,
     /// The places beside the marks, mm along the track; the last one is the track's length.
     marks: Vec<f64>,
-    /// How far to the left of the contour it is, mm.
-    pub(super) left: f64,
+    /// On which side of the contour it is.
+    pub(super) side: Side,
+    /// How far from it, mm.
+    pub(super) by: f64,
 }
 
 /// A place beside a mark of the contour, or past it.
@@ -42,10 +45,16 @@ pub(super) struct Lost {
 impl Track {
     /// The track along an outline beside a contour, with marks given in mm along the contour, the first of them 0 and the
     /// last its length.
-    pub(super) fn new(contour: &Path, outline: &Path, left: f64, marks: &[f64]) -> Result<Self, Lost> {
-        let mut track = Self::along(outline.elements().to_vec(), left);
+    pub(super) fn new(
+        contour: &Path,
+        outline: &Path,
+        (side, by): (Side, f64),
+        marks: &[f64],
+    ) -> Result<Self, Lost> {
+        let beside = |elements| Self { side, by, ..Self::along(elements) };
+        let mut track = beside(outline.elements().to_vec());
         let begin = track.beside(contour, 0.0).map_err(|at| Lost { mark: 0, at })?;
-        track = Self::along(track.between(begin, begin + track.length), left);
+        track = beside(track.between(begin, begin + track.length));
         let inner = marks.get(1..marks.len().saturating_sub(1)).unwrap_or_default();
         let mut places = vec![0.0];
         for (n, mark) in inner.iter().enumerate() {
@@ -65,20 +74,20 @@ impl Track {
             firsts.push(elements.len());
         }
         close(&mut elements);
-        track = Self::along(elements, left);
+        track = beside(elements);
         track.marks =
             firsts.into_iter().map(|n| track.begins.get(n).copied().unwrap_or(track.length)).collect();
         Ok(track)
     }
 
-    fn along(elements: Vec<Element>, left: f64) -> Self {
+    fn along(elements: Vec<Element>) -> Self {
         let mut length = 0.0;
         let mut begins = Vec::with_capacity(elements.len());
         for element in &elements {
             begins.push(length);
             length += element.length();
         }
-        Self { elements, begins, length, marks: Vec::new(), left }
+        Self { elements, begins, length, marks: Vec::new(), side: Side::Left, by: 0.0 }
     }
 
     /// How far along the track a position is, mm; it may be less than 0 or more than the track's length.
@@ -143,7 +152,8 @@ impl Track {
     /// The place beside a point of the contour given in mm along it; that point where the wire does not come to it.
     fn beside(&self, contour: &Path, along: f64) -> Result<f64, Point> {
         let (at, heading) = point_at(contour, along);
-        let wire = at + Vector::new(-heading.y, heading.x) * self.left;
+        let left = if self.side == Side::Left { self.by } else { -self.by };
+        let wire = at + Vector::new(-heading.y, heading.x) * left;
         let distances = |to: Point| self.elements.iter().map(move |element| element.distance(to)).enumerate();
         let nearest = distances(wire).min_by(|a, b| a.1.total_cmp(&b.1));
         let (n, near) = match nearest {
@@ -151,7 +161,7 @@ impl Track {
             _ => {
                 let mut others: Vec<(usize, f64)> = distances(at).collect();
                 others.sort_by(|a, b| a.1.total_cmp(&b.1));
-                let seen = |n: &usize| sees(contour, self.left, at, self.elements[*n].nearest(at));
+                let seen = |n: &usize| sees(contour, self.side, at, self.elements[*n].nearest(at));
                 (others.into_iter().map(|(n, _)| n).find(seen).ok_or(at)?, at)
             }
         };
@@ -168,22 +178,22 @@ impl Track {
     }
 }
 
-/// Whether nothing of a contour stands between one of its points and a point of the path to its left.
-fn sees(contour: &Path, left: f64, from: Point, to: Point) -> bool {
+/// Whether nothing of a contour stands between one of its points and a point of the path on a side of it.
+fn sees(contour: &Path, side: Side, from: Point, to: Point) -> bool {
     let way = to - from;
     let length = way.norm();
-    if length <= 2.0 * SNAP {
+    if length <= 2.0 * SIGHT {
         return true;
     }
-    let line = Element::Line { start: from + way * (SNAP / length), end: to };
-    let waste_inside = (contour.area() > 0.0) == (left > 0.0);
+    let line = Element::Line { start: from + way * (SIGHT / length), end: to };
+    let waste_inside = (contour.area() > 0.0) == (side == Side::Left);
     contour.contains(line.at(0.5)) == waste_inside
         && nearest_within(&line, contour.elements(), CLEAR).is_none()
 }
 
 /// The point at a length along a closed contour and the direction of the contour behind it.
 pub(super) fn point_at(contour: &Path, along: f64) -> (Point, Vector) {
-    let whole = Track::along(contour.elements().to_vec(), 0.0);
+    let whole = Track::along(contour.elements().to_vec());
     // A rounding short of a node is the node: the direction behind it counts.
     let next = whole.begins.iter().copied().find(|begin| (begin - along).abs() < SNAP);
     let along = if (along - whole.length).abs() < SNAP { 0.0 } else { next.unwrap_or(along) };
@@ -192,7 +202,7 @@ pub(super) fn point_at(contour: &Path, along: f64) -> (Point, Vector) {
 
 /// A closed contour begun at the point of it that is nearest to another.
 pub(super) fn begun_nearest(contour: &Path, to: Point) -> Path {
-    let whole = Track::along(contour.elements().to_vec(), 0.0);
+    let whole = Track::along(contour.elements().to_vec());
     let mut best = (0, f64::INFINITY);
     for (n, element) in contour.elements().iter().enumerate() {
         let distance = element.distance(to);
@@ -215,7 +225,7 @@ pub(super) fn begun_nearest(contour: &Path, to: Point) -> Path {
 }
 
 /// The direction in which an element runs at one of its points.
-fn heading(element: &Element, at: Point) -> Vector {
+pub(super) fn heading(element: &Element, at: Point) -> Vector {
     match *element {
         Element::Line { .. } => element.heading_at_start(),
         Element::Arc { centre, sense, .. } => {
@@ -272,6 +282,9 @@ fn turned(from: Vector, to: Vector, sense: Sense) -> f64 {
 
 /// Places nearer than this are one, mm: a tenth of a micron, which no node shows.
 pub(super) const SNAP: f64 = 1e-4;
+/// A line of sight begins so far from the point of the contour it is for, mm: at a tenth of a micron it would still touch the
+/// wall it leaves where that is flat, ten millimetres long for a tenth of a millimetre across.
+const SIGHT: f64 = 0.01;
 /// A line of sight so near to the contour touches it, mm: a nanometre.
 const CLEAR: f64 = 1e-6;
 /// Shorter parts of an element are left out, mm: what reckoning along a track may be out by.
@@ -291,9 +304,13 @@ mod tests {
         Path::new((0..4).map(line).collect()).unwrap()
     }
 
+    fn beside(left: f64) -> (Side, f64) {
+        (if left > 0.0 { Side::Left } else { Side::Right }, left.abs())
+    }
+
     fn track(contour: &Path, left: f64, marks: &[f64]) -> Track {
         let found = offset(contour, left, Corners::Round).unwrap();
-        Track::new(contour, &found.outlines[0].path, left, marks).unwrap()
+        Track::new(contour, &found.outlines[0].path, beside(left), marks).unwrap()
     }
 
     #[test]
@@ -318,7 +335,8 @@ mod tests {
         let contour = square();
         let found = offset(&contour, 1.0, Corners::Round).unwrap();
         // Both lie within the corner that the wire does not enter.
-        let error = Track::new(&contour, &found.outlines[0].path, 1.0, &[0.0, 9.5, 10.0, 40.0]).unwrap_err();
+        let error =
+            Track::new(&contour, &found.outlines[0].path, beside(1.0), &[0.0, 9.5, 10.0, 40.0]).unwrap_err();
         assert_eq!((error.mark, error.at), (2, Point::new(10.0, 0.0)));
     }
 
@@ -342,9 +360,33 @@ mod tests {
         // 3 mm down the slot: the nearest path runs behind the wall, the one that is seen lies before the mouth.
         let mark = 10.0 + 8.0 + 0.2 + 3.0;
         let track =
-            Track::new(&contour, &found.outlines[0].path, -0.5, &[0.0, mark, contour.length()]).unwrap();
+            Track::new(&contour, &found.outlines[0].path, beside(-0.5), &[0.0, mark, contour.length()])
+                .unwrap();
         let (at, _) = track.leaving(track.place(Position { mark: 1, laps: 0, over: 0.0 }));
         assert!(at.y > 8.0 && at.x < 9.8, "{at}");
+    }
+
+    #[test]
+    fn far_down_a_passage_too_narrow_for_the_wire_all_places_are_its_mouth() {
+        // A room, and from it a passage 0.2 mm wide and 12 mm long.
+        let p = Point::new;
+        let nodes = [
+            p(0.0, 0.0),
+            p(10.0, 0.0),
+            p(10.0, 4.0),
+            p(22.0, 4.0),
+            p(22.0, 4.2),
+            p(10.0, 4.2),
+            p(10.0, 8.0),
+            p(0.0, 8.0),
+        ];
+        let line = |n: usize| Element::Line { start: nodes[n], end: nodes[(n + 1) % nodes.len()] };
+        let contour = Path::new((0..nodes.len()).map(line).collect()).unwrap();
+        let found = offset(&contour, 0.2, Corners::Round).unwrap();
+        // 3 and 10 mm down, on the same wall.
+        let marks = [0.0, 17.0, 24.0, contour.length()];
+        let error = Track::new(&contour, &found.outlines[0].path, beside(0.2), &marks).unwrap_err();
+        assert_eq!((error.mark, error.at), (2, p(20.0, 4.0)));
     }
 
     #[test]

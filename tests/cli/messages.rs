@@ -1,10 +1,9 @@
 //! What is said to bad input, word for word.
 //!
 //! The complete standard error of each case is compared with `tests/golden/messages/NAME.txt`. The test's own directory
-//! is written `DIR` there, and the system's error numbers `N`. `DRIPFEED_BLESS=1` rewrites the files.
+//! is written `DIR` there.
 
-use std::path::PathBuf;
-
+use crate::golden;
 use crate::scratch::{PROGRAM, Scratch};
 
 /// One bad input: the golden file's name, the exit code, the words, and a file `in.3b` or `in.toml` if it has one.
@@ -13,24 +12,8 @@ struct Case(&'static str, i32, &'static str, &'static str);
 /// Everything a profile can say, so that nothing is taken from elsewhere and the latency is not looked up.
 const BENCH: &str = include_str!("../data/bench.toml");
 
-fn golden_directory() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/messages")
-}
-
-/// System error numbers differ from system to system.
-fn without_error_numbers(text: &str) -> String {
-    let mut parts = text.split("(os error ");
-    let mut normal = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        normal.push_str("(os error N");
-        normal.push_str(part.trim_start_matches(|c: char| c.is_ascii_digit()));
-    }
-    normal
-}
-
 /// Runs each case and compares; all that differ are reported together.
 fn compare(input: &str, cases: &[Case]) {
-    let blessed = std::env::var("DRIPFEED_BLESS").is_ok_and(|value| value == "1");
     let mut different = Vec::new();
     for Case(name, code, words, text) in cases {
         let scratch = Scratch::with(&[("good.3b", PROGRAM), ("bench.toml", BENCH)]);
@@ -39,14 +22,9 @@ fn compare(input: &str, cases: &[Case]) {
         }
         let run = scratch.run(&words.split_whitespace().collect::<Vec<_>>());
         let directory = scratch.path().to_string_lossy().into_owned();
-        let said = without_error_numbers(&run.stderr.replace(&directory, "DIR"));
-        let file = golden_directory().join(format!("{name}.txt"));
-        if blessed {
-            std::fs::write(&file, &said).expect("a golden file can be written");
-        }
-        let golden = std::fs::read_to_string(&file).unwrap_or_else(|wrong| format!("({wrong})\n"));
-        if said != golden {
-            different.push(format!("{name}: dripfeed {words}\n--- golden\n{golden}--- said\n{said}"));
+        let said = run.stderr.replace(&directory, "DIR");
+        if let Some(difference) = golden::difference(&format!("messages/{name}.txt"), &said) {
+            different.push(format!("{name}: dripfeed {words}\n{difference}"));
         }
         if run.code != Some(*code) {
             different.push(format!("{name}: exit {:?} instead of {code}", run.code));
@@ -68,6 +46,7 @@ const WORDS: &[Case] = &[
     Case("words-repeat-zero", 2, "generate gear --repeat=0", ""),
     Case("words-no-such-job", 2, "jobs show nothing", ""),
     Case("words-nothing-to-resume", 2, "resume", ""),
+    Case("words-offset-keyed-into-3b", 2, "check good.3b --offset 0.1", ""),
 ];
 
 const GEARS: &[Case] = &[
@@ -256,7 +235,8 @@ fn no_golden_message_is_left_over() {
         .flatten()
         .map(|Case(name, ..)| format!("{name}.txt"))
         .collect();
-    let present = std::fs::read_dir(golden_directory()).expect("the golden files");
+    let present = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/messages"))
+        .expect("the golden files");
     for file in present {
         let name = file.expect("a golden file").file_name().to_string_lossy().into_owned();
         assert!(known.contains(&name), "{name} belongs to no case");

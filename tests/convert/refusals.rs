@@ -1,10 +1,8 @@
 //! What cannot be converted, refused word for word.
 //!
-//! The complete standard error of each case lies in `tests/golden/convert/NAME.txt`; system error numbers are written `N`
-//! there. `DRIPFEED_BLESS=1` rewrites the files.
+//! The complete standard error of each case lies in `tests/golden/convert/NAME.txt`.
 
-use std::path::PathBuf;
-
+use crate::golden;
 use crate::shop::Shop;
 
 /// One refusal: the golden file's name, the exit code, the words.
@@ -79,7 +77,6 @@ const WORDS: &[Case] = &[
 ];
 
 fn compare(cases: &[Case]) {
-    let is_blessed = std::env::var("DRIPFEED_BLESS").is_ok_and(|value| value == "1");
     let shop = Shop::new();
     for (name, text) in FILES {
         shop.write(name, text);
@@ -88,14 +85,9 @@ fn compare(cases: &[Case]) {
     let mut different = Vec::new();
     for Case(name, code, words) in cases {
         let run = shop.run(&format!("convert {words}"));
-        let said = without_error_numbers(&run.stderr);
-        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/convert/{name}.txt"));
-        if is_blessed {
-            std::fs::write(&path, &said).expect("a golden file can be written");
-        }
-        let golden = std::fs::read_to_string(&path).unwrap_or_else(|wrong| format!("({wrong})\n"));
-        if said != golden {
-            different.push(format!("{name}: convert {words}\n--- golden\n{golden}--- said\n{said}"));
+        let said = &run.stderr;
+        if let Some(difference) = golden::difference(&format!("convert/{name}.txt"), said) {
+            different.push(format!("{name}: convert {words}\n{difference}"));
         }
         if run.code != Some(*code) {
             different.push(format!("{name}: exit {:?} instead of {code}", run.code));
@@ -110,17 +102,6 @@ fn compare(cases: &[Case]) {
     }
     assert_eq!(shop.files(), files, "nothing is left behind");
     assert!(different.is_empty(), "{}", different.join("\n"));
-}
-
-/// System error numbers differ from system to system.
-fn without_error_numbers(text: &str) -> String {
-    let mut parts = text.split("(os error ");
-    let mut normal = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        normal.push_str("(os error N");
-        normal.push_str(part.trim_start_matches(|c: char| c.is_ascii_digit()));
-    }
-    normal
 }
 
 #[test]

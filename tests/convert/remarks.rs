@@ -33,6 +33,19 @@ fn a_3b_listing_keeps_its_remarks_where_they_are_asked_for() {
 }
 
 #[test]
+fn numbers_are_kept_as_read_where_that_is_asked_for() {
+    let listing =
+        "N  10: B5000B0B5000GXL1\nB0B5000B5000GYL2\nN  30: B5000B0B5000GXL3\nN  40: B0B5000B5000GYL4\nDD\n";
+    let shop = Shop::with("in.3b", listing);
+    let run = shop.run("convert in.3b --numbers=as-read --interpolator rotated");
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let starts: Vec<&str> = run.stdout.lines().map(|line| line.split('B').next().unwrap()).collect();
+    assert_eq!(starts, ["N  10: ", "", "N  30: ", "N  40: ", "DD"]);
+    assert!(!run.stderr.contains("line number"), "{}", run.stderr);
+    assert!(shop.convert("in.3b --numbers").starts_with("N   1: B5000"));
+}
+
+#[test]
 fn what_a_3b_program_has_no_room_for_is_counted() {
     let shop = Shop::with("in.3b", LISTING);
     let run = shop.run("convert in.3b");

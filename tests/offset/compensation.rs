@@ -4,10 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use dripfeed::compensation::{Compensated, CompensationError, local};
+use dripfeed::compensation::{Compensated, local};
 use dripfeed::formats::ReadError;
 use dripfeed::geometry::offset::{Corners, Origin, offset};
 use dripfeed::geometry::{Element, Path, Point};
+use dripfeed::motion::runs::ContourError;
 use dripfeed::motion::{Act, Motion, Offset, Side, Travel};
 use dripfeed::place::Spot;
 
@@ -63,7 +64,7 @@ fn the_wire_keeps_its_distance_and_its_side_all_along_any_contour() {
             let registers = BTreeMap::from([(3, by)]);
             let motions = program(path.elements(), side);
             let mut compensated = Compensated::new(motions.into_iter(), registers, Corners::Round);
-            let made: Result<Vec<Motion>, CompensationError> = compensated.by_ref().collect();
+            let made: Result<Vec<Motion>, ContourError> = compensated.by_ref().collect();
             let Ok(made) = made else {
                 refused += 1;
                 continue;

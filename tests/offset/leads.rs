@@ -4,10 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use dripfeed::compensation::{Compensated, CompensationError, Fate, Warning};
+use dripfeed::compensation::{Compensated, Fate, Warning};
 use dripfeed::formats::ReadError;
 use dripfeed::geometry::offset::{Corners, Origin, offset};
 use dripfeed::geometry::{Element, Path, Point, Sense, Vector};
+use dripfeed::motion::runs::ContourError;
 use dripfeed::motion::{Act, Motion, Offset, Side, Travel};
 use dripfeed::place::Spot;
 
@@ -36,7 +37,7 @@ fn program(elements: &[Element], side: Side, by: f64) -> Vec<Result<Motion, Read
     all
 }
 
-type Made = (Result<Vec<Motion>, CompensationError>, Vec<Warning>);
+type Made = (Result<Vec<Motion>, ContourError>, Vec<Warning>);
 
 fn wire(elements: &[Element], side: Side, by: f64) -> Made {
     let motions = program(elements, side, by).into_iter();
@@ -107,7 +108,7 @@ fn with_arcs_to_lead_in_and_out_the_wire_keeps_its_distance_or_the_program_is_re
                 }
                 Err(error) => {
                     refused += 1;
-                    let CompensationError::Program { block, .. } = error else { panic!("{error}") };
+                    let ContourError::Contour { block, .. } = error else { panic!("{error}") };
                     let element = block as usize - 3;
                     let count = path.elements().len();
                     // The element is one of a part not reached, or next to it; or so little of it is not that no one is told.
@@ -148,7 +149,7 @@ fn a_neck_that_no_corner_shows_is_refused_with_the_offset_that_would_pass() {
         |pair: &[(f64, f64)]| Element::Line { start: p(pair[0].0, pair[0].1), end: p(pair[1].0, pair[1].1) };
     let contour = Path::new(nodes.windows(2).map(line).collect()).unwrap();
     let (made, _) = wire(&with_arcs(&contour, Side::Left, 1.0), Side::Left, 0.3);
-    let Err(CompensationError::Program { message, block, help, .. }) = made else { panic!("{made:?}") };
+    let Err(ContourError::Contour { message, block, help, .. }) = made else { panic!("{made:?}") };
     assert_eq!(message, "the wire cannot enter the contour here; an offset of at most 0.2000 mm would");
     // Blocks 1 and 2 lead in; the neck's lower side is the third of the contour.
     assert_eq!(block, 5);

@@ -57,7 +57,9 @@ pub(crate) fn samples(element: &Element, count: usize) -> Vec<(Point, Point)> {
                     };
                     let here = angle(start) + turn * t;
                     let (sin, cos) = (libm::sin(here), libm::cos(here));
-                    let radius = (start - centre).norm();
+                    // Where nodes are rounded the two ends of an arc are not equally far from its centre.
+                    let [from, to] = [start, end].map(|p| (p - centre).norm());
+                    let radius = from + (to - from) * t;
                     let inwards = if sense == Sense::CounterClockwise { -1.0 } else { 1.0 };
                     (
                         Point::new(centre.x + radius * cos, centre.y + radius * sin),

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use dripfeed::compensation::{Compensated, CompensationError};
+use dripfeed::compensation::Compensated;
 use dripfeed::formats::gcode::{Dialect, Motions};
 use dripfeed::formats::three_b::motions::Motions as ThreeB;
 use dripfeed::formats::three_b::write::{Form, Writer};
@@ -16,6 +16,7 @@ use dripfeed::formats::{ReadError, Writer as _};
 use dripfeed::geometry::offset::Corners;
 use dripfeed::geometry::{Element, Point};
 use dripfeed::interpolator::Model;
+use dripfeed::motion::runs::ContourError;
 use dripfeed::motion::{Act, Motion, Offset, Side, Travel};
 use dripfeed::place::Spot;
 use dripfeed::rounding::Aim;
@@ -43,7 +44,7 @@ fn read(name: &str, dialect: &str) -> Vec<Motion> {
     read.unwrap()
 }
 
-fn wire(motions: &[Motion]) -> Result<Vec<Motion>, CompensationError> {
+fn wire(motions: &[Motion]) -> Result<Vec<Motion>, ContourError> {
     let registers = (0..1000).map(|n| (n, BY)).collect::<BTreeMap<_, _>>();
     Compensated::new(motions.iter().cloned().map(Ok::<_, ReadError>), registers, Corners::Round).collect()
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::super::failure::{Exit, Failure};
 use super::super::{dialects, plot};
-use super::{Gcode, Options, To};
+use super::words::{Gcode, Options, To};
 use crate::drawing::dxf::DxfWriter;
 use crate::formats::four_b::write::ToKey;
 use crate::formats::losses::Losses;
