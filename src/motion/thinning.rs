@@ -26,14 +26,14 @@ pub struct Thinning {
     /// How far the path may be from the programmed one, mm; a positive length.
     pub tolerance: f64,
     /// What is made.
-    pub into: Into,
+    pub made: Made,
     /// The greatest radius of an arc, mm: controls have one.
     pub radius_max: f64,
 }
 
 /// What lines are merged into.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Into {
+pub enum Made {
     /// Lines alone.
     Lines,
     /// Lines and arcs, each arc at most 170 degrees.

@@ -1,6 +1,6 @@
 //! The longest line and the longest arc that stand for the first points of a chain.
 
-use super::{Into, Thinning};
+use super::{Made, Thinning};
 use crate::geometry::{Element, Point, Sense, Vector};
 
 impl Thinning {
@@ -9,9 +9,9 @@ impl Thinning {
         let most = points.len() - 1;
         let line = farthest(1, most, |count| self.line(&points[..=count]));
         // An arc is worth having where it stands for more.
-        let arc = match self.into {
-            Into::Lines => None,
-            Into::LinesAndArcs => {
+        let arc = match self.made {
+            Made::Lines => None,
+            Made::LinesAndArcs => {
                 farthest(line.map_or(1, |(count, _)| count), most, |count| self.arc(&points[..=count]))
             }
         };

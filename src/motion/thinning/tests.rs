@@ -9,7 +9,7 @@ use crate::place::Spot;
 #[test]
 fn points_on_a_line_become_a_line() {
     let chain: Vec<Point> = (0..=500).map(|n| Point::new(f64::from(n) * 0.02, f64::from(n) * 0.01)).collect();
-    let made = thin(&chain, 0.001, Into::LinesAndArcs);
+    let made = thin(&chain, 0.001, Made::LinesAndArcs);
     assert_eq!(made, [Element::Line { start: chain[0], end: chain[500] }]);
 }
 
@@ -22,10 +22,10 @@ fn a_corner_of_a_slot_becomes_a_few_arcs() {
             micrometres(x, 20.0 + (49.0 - (x - 20.0) * (x - 20.0)).max(0.0).sqrt())
         })
         .collect();
-    let arcs = thin(&chain, 0.002, Into::LinesAndArcs);
+    let arcs = thin(&chain, 0.002, Made::LinesAndArcs);
     // The first lines, where a hundredth along is half a millimetre up, are no arc within 2 µm.
     assert!(arcs.len() <= 8, "{} elements", arcs.len());
-    let lines = thin(&chain, 0.002, Into::Lines);
+    let lines = thin(&chain, 0.002, Made::Lines);
     assert!(arcs.len() < lines.len() && lines.len() < 60, "{} lines", lines.len());
     assert_near(&chain, &arcs, 0.002);
     assert_near(&chain, &lines, 0.002);
@@ -39,8 +39,8 @@ fn every_path_is_within_the_tolerance_both_ways() {
     for seed in 1..=30 {
         for tolerance in [0.0005, 0.002, 0.01, 0.1] {
             let chain = curve(seed);
-            for into in [Into::Lines, Into::LinesAndArcs] {
-                let made = thin(&chain, tolerance, into);
+            for made in [Made::Lines, Made::LinesAndArcs] {
+                let made = thin(&chain, tolerance, made);
                 assert!(made.len() < chain.len(), "seed {seed}");
                 assert_near(&chain, &made, tolerance);
             }
@@ -60,7 +60,7 @@ fn random_walks_are_within_the_tolerance_too() {
         .take(300)
         .collect();
         for tolerance in [0.001, 0.01, 0.05] {
-            assert_near(&chain, &thin(&chain, tolerance, Into::LinesAndArcs), tolerance);
+            assert_near(&chain, &thin(&chain, tolerance, Made::LinesAndArcs), tolerance);
         }
     }
 }
@@ -73,7 +73,7 @@ fn a_circle_is_cut_all_round_in_three_arcs() {
             micrometres(10.0 * cosine, 10.0 * sine)
         })
         .collect();
-    let made = thin(&chain, 0.002, Into::LinesAndArcs);
+    let made = thin(&chain, 0.002, Made::LinesAndArcs);
     assert!(made.len() == 3, "{made:?}");
     assert!(made.iter().all(|element| element.sweep() < 0.5 * TAU));
     assert_eq!((made[0].start(), made.last().unwrap().end()), (chain[0], chain[0]));
@@ -84,9 +84,9 @@ fn a_circle_is_cut_all_round_in_three_arcs() {
 fn a_way_back_is_not_swallowed() {
     let ways = [(0.0, 0.0), (10.0, 0.0), (5.0, 0.0), (12.0, 0.0), (0.0, 0.0)];
     let chain: Vec<Point> = ways.iter().map(|&(x, y)| Point::new(x, y)).collect();
-    assert_eq!(thin(&chain, 0.01, Into::LinesAndArcs).len(), 4);
+    assert_eq!(thin(&chain, 0.01, Made::LinesAndArcs).len(), 4);
     let full_circle_back = [(0.0, 0.0), (1.0, 0.0), (0.0, 0.0)].map(|(x, y)| Point::new(x, y));
-    assert_eq!(thin(&full_circle_back, 0.01, Into::LinesAndArcs).len(), 2);
+    assert_eq!(thin(&full_circle_back, 0.01, Made::LinesAndArcs).len(), 2);
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn rapids_arcs_and_tilted_lines_are_not_merged() {
 #[test]
 fn an_error_comes_behind_what_was_before_it() {
     let motions = [Ok(line((0.0, 0.0), (1.0, 0.0))), Ok(line((1.0, 0.0), (2.0, 0.0))), Err("broken")];
-    let made: Vec<_> = thinned(motions.into_iter(), rule(0.01, Into::Lines)).collect();
+    let made: Vec<_> = thinned(motions.into_iter(), rule(0.01, Made::Lines)).collect();
     assert_eq!(made, [Ok(line((0.0, 0.0), (2.0, 0.0))), Err("broken")]);
 }
 
@@ -175,27 +175,27 @@ fn no_more_lines_are_held_than_stated() {
         let x = |n: u32| f64::from(n) * 0.01;
         Ok::<_, ()>(line((x(n), libm::sin(x(n))), (x(n + 1), libm::sin(x(n + 1)))))
     });
-    let mut thinned = thinned(endless, rule(1e-6, Into::LinesAndArcs));
+    let mut thinned = thinned(endless, rule(1e-6, Made::LinesAndArcs));
     for _ in 0..20_000 {
         thinned.next().unwrap().unwrap();
         assert!(thinned.moves.len() < LINES_MAX && thinned.ready.len() < 2);
     }
 }
 
-fn rule(tolerance: f64, into: Into) -> Thinning {
-    Thinning { tolerance, into, radius_max: 10_000.0 }
+fn rule(tolerance: f64, made: Made) -> Thinning {
+    Thinning { tolerance, made, radius_max: 10_000.0 }
 }
 
 fn all(motions: Vec<Motion>) -> Vec<Motion> {
     let motions = motions.into_iter().map(Ok::<_, ()>);
-    thinned(motions, rule(0.01, Into::LinesAndArcs)).map(Result::unwrap).collect()
+    thinned(motions, rule(0.01, Made::LinesAndArcs)).map(Result::unwrap).collect()
 }
 
 /// The elements of a chain through points.
-fn thin(chain: &[Point], tolerance: f64, into: Into) -> Vec<Element> {
+fn thin(chain: &[Point], tolerance: f64, made: Made) -> Vec<Element> {
     let motions =
         chain.windows(2).map(|pair| Ok::<_, ()>(line((pair[0].x, pair[0].y), (pair[1].x, pair[1].y))));
-    thinned(motions, rule(tolerance, into))
+    thinned(motions, rule(tolerance, made))
         .map(|motion| match motion.unwrap().act {
             Act::Move { element, .. } => element,
             other => panic!("{other:?}"),
