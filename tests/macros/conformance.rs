@@ -243,6 +243,7 @@ fn goto_searches_forwards_first() {
     );
     // The same number in front and behind: forwards first.
     assert_eq!(made("N1 X1.\nGOTO1\nX2.\nN1 X3.\n"), "N1 X1.; N1 X3.");
+    assert!(made("GOTO 1.5\n").contains("error 1:6: an N number with a point"));
     assert!(made("GOTO 99\n").contains("error 1:1: there is no N99 in this program"));
     assert!(made("#1=99\nGOTO#1\n").contains("error 2:1: there is no N99 in the program"));
     assert!(made("GOTO5\nDO1\nN5 X1.\nEND1\n").contains("into the loop DO1 of line 2 from outside"));
