@@ -218,6 +218,8 @@ fn comparisons_and_conditions_joined() {
     assert!(made("WHILE[#1]DO1\nEND1\n").contains("a number where a condition is needed"));
     let haas = "#1=[2GT1]\nWHILE[#1]DO1\n#1=#1-1\nX#1\nEND1\nIF[#1]GOTO9\nY#1\nN9 M2\n";
     assert_eq!(with(|o| o.control = Control::Haas, haas), "X0; Y0; N9 M2");
+    let set = "#1=[2GT1]\nIF[#1]GOTO9\nX1.\nN9 X#1\n";
+    assert_eq!(with(|o| o.control = Control::Haas, set), "N9 X1");
     assert!(made("IF[#1GT0AND#2GT0]GOTO1\nN1\n").contains("a second comparison"));
 }
 
