@@ -218,6 +218,8 @@ fn comparisons_and_conditions_joined() {
     assert!(made("WHILE[#1]DO1\nEND1\n").contains("a number where a condition is needed"));
     let haas = "#1=[2GT1]\nWHILE[#1]DO1\n#1=#1-1\nX#1\nEND1\nIF[#1]GOTO9\nY#1\nN9 M2\n";
     assert_eq!(with(|o| o.control = Control::Haas, haas), "X0; Y0; N9 M2");
+    let set = "#1=[2GT1]\nIF[#1]GOTO9\nX1.\nN9 X#1\n";
+    assert_eq!(with(|o| o.control = Control::Haas, set), "N9 X1");
     assert!(made("IF[#1GT0AND#2GT0]GOTO1\nN1\n").contains("a second comparison"));
 }
 
@@ -243,6 +245,7 @@ fn goto_searches_forwards_first() {
     );
     // The same number in front and behind: forwards first.
     assert_eq!(made("N1 X1.\nGOTO1\nX2.\nN1 X3.\n"), "N1 X1.; N1 X3.");
+    assert!(made("GOTO 1.5\n").contains("error 1:6: an N number with a point"));
     assert!(made("GOTO 99\n").contains("error 1:1: there is no N99 in this program"));
     assert!(made("#1=99\nGOTO#1\n").contains("error 2:1: there is no N99 in the program"));
     assert!(made("GOTO5\nDO1\nN5 X1.\nEND1\n").contains("into the loop DO1 of line 2 from outside"));
