@@ -145,3 +145,59 @@ fn a_straight_is_free_as_far_as_the_wire_keeps_its_distance() {
     assert!(!source.is_free(p(4.0, 0.0), p(6.0, 0.0)) && source.is_free(p(4.0, -0.1), p(6.0, -0.1)));
     assert!(!source.is_free(p(4.6, 0.0), p(5.4, 0.0)));
 }
+
+/// The arc of half a millimetre about a corner on the wire's right, from one angle to another, degrees.
+fn about(corner: Point, from: f64, to: f64) -> Element {
+    let at = |angle: f64| {
+        let angle = angle.to_radians();
+        corner + Vector::new(libm::cos(angle), libm::sin(angle)) * 0.5
+    };
+    Element::Arc {
+        start: at(from),
+        end: at(to),
+        centre: corner,
+        sense: crate::geometry::Sense::CounterClockwise,
+    }
+}
+
+#[test]
+fn a_corner_arc_at_the_end_of_an_open_outline_has_no_neighbour_to_run_into() {
+    use Origin::{Corner, Element as Beside};
+    // The last way of the one runs as its first arc begins, the first way of the other as its last arc ends.
+    let (o, b) = (p(0.0, 0.0), p(0.0, 4.5));
+    let contour = vec![line(p(-3.0, 0.0), o), line(o, b), line(b, p(3.0, 4.5))];
+    let first = about(o, -90.0, 0.0);
+    let ways = vec![first, line(first.end(), p(0.5, 4.0)), line(p(0.5, 4.0), p(3.0, 4.0))];
+    let begins = (contour, ways, vec![Corner(0), Beside(1), Beside(2)]);
+    let (b, c) = (p(0.0, 3.0), p(3.0, 3.0));
+    let contour = vec![line(o, b), line(b, c), line(c, p(3.0, 6.0))];
+    let last = about(c, -90.0, 0.0);
+    let ways = vec![line(p(0.5, 0.0), p(0.5, 2.5)), line(p(0.5, 2.5), last.start()), last];
+    let ends = (contour, ways, vec![Beside(0), Beside(1), Corner(1)]);
+    for (contour, ways, origins) in [begins, ends] {
+        let source = Source::new(&Path::new(contour).unwrap(), -0.5);
+        let outline = Outline { path: Path::new(ways).unwrap(), origins };
+        assert_eq!(sharpened(outline.clone(), &source, 1.5), outline);
+    }
+}
+
+#[test]
+fn a_corner_arc_stays_where_either_of_its_neighbours_meets_it_at_an_angle() {
+    let corner = p(10.0, 0.0);
+    let contour = Path::new(vec![line(p(0.0, 0.0), corner), line(corner, p(10.0, 9.0))]).unwrap();
+    let source = Source::new(&contour, -0.5);
+    for (from, to, stays) in
+        [(-90.0, 0.0, false), (-80.0, 0.0, true), (-90.0, -10.0, true), (-90.01, 0.0, true)]
+    {
+        let arc = about(corner, from, to);
+        let ways = vec![
+            line(arc.start() - Vector::new(8.0, 0.0), arc.start()),
+            arc,
+            line(arc.end(), arc.end() + Vector::new(0.0, 8.0)),
+        ];
+        let origins = vec![Origin::Element(0), Origin::Corner(0), Origin::Element(1)];
+        let outline = Outline { path: Path::new(ways).unwrap(), origins };
+        let found = sharpened(outline.clone(), &source, 1.5);
+        assert_eq!(found == outline, stays, "{from} {to}: {found:?}");
+    }
+}

@@ -197,3 +197,31 @@ fn between_two_noses_the_throat_is_where_they_are_nearest() {
         assert!((found - 0.15).abs() < 1e-8, "{from} {to} {found}");
     }
 }
+
+#[test]
+fn under_a_falling_roof_the_throat_is_at_the_far_end_of_the_part_looked_at() {
+    let slope = libm::atan(0.1);
+    let under = |x: f64| (2.0 - 0.1 * x) * libm::cos(slope) / (1.0 + libm::cos(slope));
+    let elements = vec![
+        line(p(0.0, 0.0), p(10.0, 0.0)),
+        line(p(10.0, 0.0), p(20.0, 0.0)),
+        line(p(20.0, 0.0), p(-10.0, 3.0)),
+    ];
+    let (source, path) = source(elements, 5.0);
+    for (from, to) in [(0.2, 0.8), (0.1, 0.5), (0.5, 0.9)] {
+        let found = source.throat(&path.elements()[0], [from, to], &|element| element != 2);
+        assert!((found - under(10.0 * to)).abs() < 1e-6, "{from} {to}: {found} {}", under(10.0 * to));
+    }
+}
+
+#[test]
+fn the_largest_wire_of_a_triangle_is_its_inscribed_circle() {
+    // Sides of 3, 4 and 5: a circle of 1 touches all three, the first of them at a quarter, a third or two fifths or so.
+    let nodes = [p(0.0, 0.0), p(4.0, 0.0), p(0.0, 3.0)];
+    let sides = (0..3).map(|n| line(nodes[n], nodes[(n + 1) % 3])).collect();
+    let (source, path) = source(sides, 2.0);
+    for (n, side) in path.elements().iter().enumerate() {
+        let found = source.reach_of(n, side);
+        assert!((found - 1.0).abs() < 1e-6, "{n}: {found}");
+    }
+}
