@@ -119,11 +119,11 @@ fn changed(motions: Motions, options: &Options, to: To, places: &mut Places) -> 
             }
             let mut stream: Stream = Box::new(motions.map(|motion| motion.map_err(ContourError::from)));
             if let Some(tolerance) = wire.thin.filter(|tolerance| *tolerance > 0.0) {
-                let into = match wire.thin_into {
-                    Some(ThinInto::Lines) => thinning::Into::Lines,
-                    Some(ThinInto::Arcs) | None => thinning::Into::LinesAndArcs,
+                let made = match wire.thin_into {
+                    Some(ThinInto::Lines) => thinning::Made::Lines,
+                    Some(ThinInto::Arcs) | None => thinning::Made::LinesAndArcs,
                 };
-                let thinning = Thinning { tolerance, into, radius_max: ARC_RADIUS_MAX };
+                let thinning = Thinning { tolerance, made, radius_max: ARC_RADIUS_MAX };
                 stream = Box::new(thinning::thinned(stream, thinning));
             }
             if let Some(start) = wire.start.first() {

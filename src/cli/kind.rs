@@ -114,10 +114,11 @@ fn has_macros(text: &[u8]) -> bool {
     let mut words = Vec::new();
     text.split(|&b| b == b'\n' || b == b'\r').any(|line| {
         words::cut(line, &mut words).is_ok()
-            && words.iter().any(|word| match (word.kind, word.letter, word.whole()) {
-                (words::Kind::Macro, ..) => true,
-                (words::Kind::Word, b'G', Some(65..=67)) | (words::Kind::Word, b'M', Some(97)) => true,
-                _ => false,
+            && words.iter().any(|word| {
+                let whole = word.whole();
+                word.kind == words::Kind::Macro
+                    || (word.kind == words::Kind::Word
+                        && matches!((word.letter, whole), (b'G', Some(65..=67)) | (b'M', Some(97))))
             })
     })
 }

@@ -56,8 +56,8 @@ fn frames_reads(heard: &[u8], at: usize) -> Option<usize> {
         }
         body
     };
-    let frames = heard.split(|&byte| byte == 0x7E).map(unescaped).filter(|frame| frame.len() > 6);
-    frames.last().and_then(|frame| match frame[0] {
+    let mut frames = heard.split(|&byte| byte == 0x7E).map(unescaped).filter(|frame| frame.len() > 6);
+    frames.next_back().and_then(|frame| match frame[0] {
         b'A' if usize::from(frame[2]) == at + 1 => Some(at + 1),
         b'N' => Some(at),
         _ => None,
