@@ -149,7 +149,7 @@ impl Decoder {
                 0x00 => return Err(th("a blank inside a block")),
                 // BS moves nothing on a control (a reading).
                 0x7F | 0x2A => return Ok(String::new()),
-                _ if byte.count_ones() % 2 == 0 => return Err(th("even parity")),
+                _ if byte.count_ones().is_multiple_of(2) => return Err(th("even parity")),
                 EIA_END_OF_BLOCK => "\n".to_owned(),
                 _ => match EIA.iter().find(|&&(code, _)| code == byte) {
                     Some((_, c)) => c.to_string(),
