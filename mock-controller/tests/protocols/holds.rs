@@ -128,7 +128,7 @@ fn frames_say_that_they_hold_and_take_what_was_announced() {
         heard.extend(talk.control.receive(talk.now));
         // A frame begins and ends with a flag.
         let flags = heard.iter().filter(|&&byte| byte == 0x7E).count();
-        let whole = if flags % 2 == 0 { std::mem::take(&mut heard) } else { Vec::new() };
+        let whole = if flags.is_multiple_of(2) { std::mem::take(&mut heard) } else { Vec::new() };
         for answer in whole.split(|&byte| byte == 0x7E).filter(|answer| !answer.is_empty()) {
             assert_eq!(answer[0], b'A', "{answer:02X?}");
             windows.push((answer[2], answer[5]));
