@@ -276,3 +276,12 @@ fn a_small_circle_is_told_from_one_a_little_larger() {
         }
     }
 }
+
+#[test]
+fn a_stray_segment_is_given_to_what_lies_at_the_offset_and_not_to_what_lies_nearer() {
+    // Half a millimetre above the floor, and nearer to the wall.
+    let source = source(vec![line(p(0.0, 0.0), p(6.0, 0.0)), line(p(6.0, 0.0), p(6.0, 4.0))], 0.5);
+    let stray = segment(p(5.6, 0.4), p(5.8, 0.6), 0.0);
+    let key = source.key_of(&stray, None);
+    assert_eq!((key.number, key.is_exact), (0, false));
+}

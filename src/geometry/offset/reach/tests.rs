@@ -55,9 +55,9 @@ fn the_circle_that_just_touches_a_piece_is_empty_and_a_larger_one_is_not() {
             straight(p(number(-5.0, 5.0), number(-5.0, 5.0)), p(number(-5.0, 5.0), number(-5.0, 5.0)))
         } else {
             let turn = number(0.1, 3.1) * if n % 3 == 1 { 1.0 } else { -1.0 };
-            bent(p(number(-4.0, 4.0), number(-4.0, 4.0)), number(0.2, 4.0), number(0.0, 6.28), turn)
+            bent(p(number(-4.0, 4.0), number(-4.0, 4.0)), number(0.2, 4.0), number(0.0, 6.2), turn)
         };
-        let angle = number(0.0, 6.28);
+        let angle = number(0.0, 6.2);
         let (point, normal) =
             (p(number(-4.0, 4.0), number(-4.0, 4.0)), Vector::new(libm::cos(angle), libm::sin(angle)));
         let all = places(&piece, 1000);

@@ -13,7 +13,7 @@ fn arc(centre: Point, radius: f64, from: f64, turn: f64) -> Element {
 
 #[test]
 fn bulges_are_the_tangent_of_a_quarter_of_the_angle_swept() {
-    for turn in [0.01, 0.5, 1.0, 1.57, 2.0, 3.0, 3.14] {
+    for turn in [0.01, 0.5, 1.0, 1.57, 2.0, 3.0, 3.1] {
         for turn in [turn, -turn] {
             for radius in [0.1, 3.0, 500.0] {
                 let element = arc(p(1.0, -2.0), radius, 0.7, turn);
@@ -36,7 +36,7 @@ fn bulges_are_the_tangent_of_a_quarter_of_the_angle_swept() {
 
 #[test]
 fn arcs_beyond_half_a_circle_are_two_pieces_that_meet_in_the_middle() {
-    for turn in [3.2, 4.5, 6.0, 6.28] {
+    for turn in [3.2, 4.5, 6.0, 6.2] {
         for turn in [turn, -turn] {
             let element = arc(p(2.0, 0.0), 3.0, 0.3, turn);
             let source = Source::new(&Path::new(vec![element]).unwrap(), 0.05);
@@ -96,7 +96,7 @@ fn what_is_shorter_than_a_point_is_left_out_and_the_next_piece_begins_before_it(
     // A contour that ends a rounding from its start in what is left out still closes in one point.
     let open = Path::new(vec![line((0.0, 0.0), (5.0, 0.0)), line((5.0, 0.0), (5.0, 4.0))]).unwrap();
     let source = Source::new(&open, 1.0);
-    let last = source.polyline.iter_vertexes().last().unwrap();
+    let last = source.polyline.iter_vertexes().next_back().unwrap();
     assert_eq!((source.polyline.vertex_count(), last.x, last.y, last.bulge), (3, 5.0, 4.0, 0.0));
 }
 
