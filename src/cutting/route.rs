@@ -350,7 +350,7 @@ impl Cutter<'_> {
             let (elements, least) =
                 if own { (self.course.elements(), offset) } else { (contour.path.elements(), kerf) };
             let hit = if own && least == 0.0 {
-                self.into_part(way)
+                self.through_part(way)
             } else {
                 nearest_within(way, elements, (least - TOUCH.min(least / 2.0)).max(CROSSES))
             };
@@ -370,7 +370,7 @@ impl Cutter<'_> {
     }
 
     /// Where a way to or from the very contour leads through the part.
-    fn into_part(&self, way: &Element) -> Option<Nearest> {
+    fn through_part(&self, way: &Element) -> Option<Nearest> {
         let is_end = |at: Point| [way.start(), way.end()].iter().any(|end| (end - at).norm() <= 2.0 * TOUCH);
         let crossed = self.course.elements().iter().flat_map(|element| crossings(way, element));
         let middle = way.at(0.5);

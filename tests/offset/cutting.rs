@@ -56,6 +56,7 @@ fn every_plan_cuts_all_of_its_contour_at_its_offset_and_its_tabs_last() {
                         | Fault::TabTooShort { .. }
                         | Fault::TabLost { .. }
                         | Fault::EntryLost { .. }
+                        | Fault::OvercutTooLong { .. }
                         | Fault::TabsTooLong { .. }
                 );
                 prop_assert!(expected, "{refusal}");
