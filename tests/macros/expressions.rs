@@ -184,7 +184,7 @@ fn letters(text: &str, dice: &mut Dice) -> String {
 
 #[test]
 fn a_hundred_thousand_expressions_come_to_what_they_say() {
-    let mut dice = Dice(0x5EED_0F_D12E_A3B7);
+    let mut dice = Dice(0x5EED_0FD1_2EA3_B711);
     let mut signs = [0usize; 6];
     for batch in 0..EXPRESSIONS / BATCH {
         let (mut program, mut grown) = (String::new(), Vec::new());

@@ -180,8 +180,8 @@ mod tests {
     #[test]
     fn dividing_by_a_reciprocal_is_dividing() {
         let mut size = 0x9E37_79B9_7F4A_7C15_u64;
-        for n in 1..19 {
-            let power = POWERS[n].unsigned_abs();
+        for (n, power) in POWERS.into_iter().enumerate().skip(1) {
+            let power = power.unsigned_abs();
             let steps = (0..40).flat_map(|k| [power * (MANTISSA_MAX / power) - k, power + k, k]);
             let edges = [MANTISSA_MAX, MANTISSA_MAX - 1, power - 1, 0];
             for size in steps.chain(edges) {
