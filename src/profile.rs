@@ -128,6 +128,8 @@ pub struct ProfileFile {
     pub profile: Profile,
     /// Keys taken from `generic-iso`.
     pub assumed: Vec<&'static str>,
+    /// The same of what matters to macro programs alone.
+    pub assumed_of_macros: Vec<&'static str>,
 }
 
 impl Profile {
@@ -172,8 +174,8 @@ impl Profile {
     /// With the place of whatever is wrong.
     pub fn parse(text: &str) -> Result<ProfileFile, KeyError> {
         let mut profile = Self::generic_iso()?;
-        let assumed = profile.apply(text)?;
-        Ok(ProfileFile { profile, assumed })
+        let (assumed, assumed_of_macros) = profile.apply(text)?;
+        Ok(ProfileFile { profile, assumed, assumed_of_macros })
     }
 
     /// Changes one value, as `--set KEY=VALUE` does.
@@ -199,8 +201,8 @@ impl Profile {
         self.apply(&format!("[{section}]\n{name} = {quoted}\n")).map(|_| ())
     }
 
-    /// Takes over every key the text gives; returns those it does not.
-    fn apply(&mut self, text: &str) -> Result<Vec<&'static str>, KeyError> {
+    /// Takes over every key the text gives; returns those it does not, those of macro programs apart.
+    fn apply(&mut self, text: &str) -> Result<(Vec<&'static str>, Vec<&'static str>), KeyError> {
         let document = Document::parse(text)?;
         let sections = document.sections([
             "machine", "link", "protocol", "tape", "control", "gcode", "macros", "travel", "taper",
@@ -272,6 +274,12 @@ impl Profile {
         given("buffer_bytes", buffer.is_some());
         self.buffer_bytes = buffer.unwrap_or(self.buffer_bytes);
 
+        let mut of_macros = Vec::new();
+        let mut given = |key: &'static str, is_given: bool| {
+            if !is_given {
+                of_macros.push(key);
+            }
+        };
         gcode::form(&mut self.form, gcode, &mut given)?;
         let arithmetic = gcode::macros(&mut self.macros, &mut self.form, macros, &mut given)?;
         self.arithmetic = arithmetic.unwrap_or(self.arithmetic);
@@ -302,7 +310,7 @@ impl Profile {
             let message = "3B needs seven data bits or more";
             return Err(link.error("framing", message, Some("typical is \"7E2\"")));
         }
-        Ok(assumed)
+        Ok((assumed, of_macros))
     }
 
     /// How the line is paced, given the latency found or assumed; none of it when unpaced.
@@ -387,7 +395,7 @@ mod tests {
     #[test]
     fn the_generic_profile_states_every_key() {
         let file = Profile::parse(GENERIC_ISO).unwrap();
-        assert_eq!(file.assumed, Vec::<&str>::new());
+        assert_eq!((file.assumed, file.assumed_of_macros), (Vec::<&str>::new(), Vec::new()));
         assert_eq!((file.profile.baud, file.profile.framing.bits()), (4800, 11));
         assert_eq!(file.profile.tape.leader().unwrap(), b"%\n");
     }

@@ -2,6 +2,7 @@
 //!
 //! Needs lrzsz (`apt-get install lrzsz`); a test without it fails. `cargo test -p mock-controller --features peers --test peers`.
 #![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};

@@ -109,6 +109,19 @@ pub(super) fn resolve(machine: &str, line: &LineOptions) -> Result<(Profile, Vec
     Ok((profile, file.assumed))
 }
 
+/// As [`resolve`], for a macro program: says how it is run and spelled where nobody has.
+pub(super) fn of_macros(machine: Option<&str>, line: &LineOptions) -> Result<Profile, Failure> {
+    let Some(name) = machine else {
+        say!("macros are run and blocks spelled as generic-iso has them, for want of a machine");
+        return Ok(resolve("generic-iso", line)?.0);
+    };
+    let assumed = machines::load(name)?.assumed_of_macros;
+    if !assumed.is_empty() {
+        say!("{name}: of macro programs not given, taken from generic-iso: {}", assumed.join(", "));
+    }
+    Ok(resolve(name, line)?.0)
+}
+
 /// As [`resolve`], and says what was not stated: the whole of `generic-iso` when no machine is named.
 pub(super) fn profile(machine: Option<&str>, line: &LineOptions) -> Result<Profile, Failure> {
     let name = machine.unwrap_or("generic-iso");

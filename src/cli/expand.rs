@@ -51,7 +51,7 @@ pub(super) struct Options {
 
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let line = LineOptions { set: options.set.clone(), ..LineOptions::default() };
-    let profile = connection::resolve(options.machine.as_deref().unwrap_or("generic-iso"), &line)?.0;
+    let profile = connection::of_macros(options.machine.as_deref(), &line)?;
     let text = text_of(&options.input)?;
     let program = MacroProgram::parse(
         &options.input,
@@ -62,9 +62,6 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
         options.suppress,
     )?;
     drop(text);
-    if options.machine.is_none() {
-        say!("blocks are spelled as generic-iso has them, for want of a machine");
-    }
     // What breaks is told when it is come to, behind all that is made before it.
     if let Ok(Forecast { idle: Some(failure), .. }) = program.forecast(&options.input, line_of(&profile)) {
         return Err(failure);

@@ -141,17 +141,9 @@ fn of_content(head: &[u8]) -> Option<Kind> {
     let kind = lines.find_map(|line| match blocks_in(line) {
         Some(letters) if letters >= 4 => Some(Kind::FourB),
         Some(_) => Some(Kind::ThreeB),
-        None => (is_gcode(line) || line.starts_with(b"#")).then_some(Kind::Gcode),
+        None => (is_gcode(line) || is_assignment(line)).then_some(Kind::Gcode),
     });
-    match kind {
-        Some(Kind::Gcode) if has_macros(head) => Some(Kind::Macro),
-        Some(Kind::Gcode)
-            if !head.split(|&b| b == b'\n' || b == b'\r').any(|line| is_gcode(line.trim_ascii())) =>
-        {
-            None
-        }
-        other => other,
-    }
+    if kind == Some(Kind::Gcode) && has_macros(head) { Some(Kind::Macro) } else { kind }
 }
 
 /// How many B words begin the first block in a line, if it holds a 3B or 4B block.
@@ -166,6 +158,13 @@ fn blocks_in(line: &[u8]) -> Option<usize> {
         }
     }
     None
+}
+
+/// Whether a line begins as `#1=`, `#[1]=` or `#<name>=`, and not as a remark of some other language.
+fn is_assignment(line: &[u8]) -> bool {
+    let behind = line.strip_prefix(b"#").map(<[u8]>::trim_ascii_start);
+    behind.and_then(|behind| behind.first()).is_some_and(|b| b.is_ascii_digit() || matches!(b, b'[' | b'<'))
+        && line.contains(&b'=')
 }
 
 /// Whether a line begins as a block of G-code.

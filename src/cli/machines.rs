@@ -45,7 +45,8 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
             if options.json {
                 return print_json(&summary(&file.profile));
             }
-            let assumed = match file.assumed.as_slice() {
+            let keys = [file.assumed, file.assumed_of_macros].concat();
+            let assumed = match keys.as_slice() {
                 [] => String::new(),
                 keys => format!("; taken from generic-iso: {}", keys.join(", ")),
             };

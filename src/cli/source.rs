@@ -142,7 +142,7 @@ impl Source {
 
     /// A macro program, read whole.
     fn of_macro(word: &str, dialect: Option<&str>, macros: &MacroSource<'_>) -> Result<Self, Failure> {
-        let profile = connection::resolve(macros.machine.unwrap_or("generic-iso"), macros.line)?.0;
+        let profile = connection::of_macros(macros.machine, macros.line)?;
         let text = super::macros::text_of(word)?;
         let program = MacroProgram::parse(word, &text, macros.options, &profile, dialect, false)?;
         let path = match word {

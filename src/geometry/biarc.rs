@@ -233,6 +233,7 @@ impl<C: Curve> Search<'_, C> {
         let mut bad: Option<(f64, f64)> = None;
         // Tries in a row on one side of the length sought: below zero when they were too long.
         let mut side = 0;
+        let mut refused = 0;
         for attempt in 0..TRIES {
             let mut to = (at + step).min(whole);
             if whole - to < 1e-9 * whole {
@@ -272,7 +273,10 @@ impl<C: Curve> Search<'_, C> {
                     found.is_measured = true;
                     break;
                 }
-                bad = Some((found.to - at, found.deviation.max(tolerance)));
+                // What a glance takes to fit and a measure does not, again and again, is far from fitting: about half.
+                refused += 1;
+                let more = if refused > 1 { 8.0 * tolerance } else { found.deviation.max(tolerance) };
+                bad = Some((found.to - at, more));
                 good = None;
             }
             step = self.next(good.as_ref().map(|found| (found.to - at, found.deviation)), bad, side);
@@ -320,7 +324,8 @@ impl<C: Curve> Search<'_, C> {
         match (good, bad) {
             (Some((low, less)), None) => low * (root(self.fit.tolerance * AIM) / root(less)).clamp(1.02, 8.0),
             (None, Some((high, more))) => {
-                high * (root(self.fit.tolerance * AIM) / root(more)).clamp(0.2, 0.95)
+                let least = if side < -2 { 0.5 } else { 0.95 };
+                high * (root(self.fit.tolerance * AIM) / root(more)).clamp(0.2, least)
             }
             (Some((low, less)), Some((high, more))) => {
                 let (below, above) = (root(less), root(more));
