@@ -143,7 +143,7 @@ fn ahead<N: Number>(name: &str, mut lines: Expanded<N>) -> Result<Forecast, Fail
             }
         }
     }
-    let idle = (is_whole && lines.moves() == 0).then(|| idle(name, lines.findings()));
+    let idle = (is_whole && !lines.moves()).then(|| idle(name, lines.findings()));
     let starvation = lines.account().and_then(|account| account.text());
     Ok(Forecast { idle, starvation, size: is_whole.then_some(size) })
 }

@@ -22,8 +22,8 @@ pub struct Expanded<N> {
     printer: Printer,
     block: Block<N>,
     blocks: u64,
-    /// Blocks spelled that hold a length or an angle.
-    moves: u64,
+    /// Whether a block spelled held a length or an angle.
+    moves: bool,
     starvation: Option<Starvation>,
     /// Whether blocks that are run over must be spelled, for those behind them to be spelled right.
     spells_all: bool,
@@ -53,7 +53,7 @@ impl<N: Number> Expanded<N> {
             printer,
             block: Block::default(),
             blocks: 0,
-            moves: 0,
+            moves: false,
             starvation: None,
             spells_all,
         }
@@ -88,9 +88,11 @@ impl<N: Number> Expanded<N> {
                 Printed::Remark => return Ok(Step::Remark),
                 Printed::Block => {
                     self.blocks += 1;
-                    let form = self.printer.form();
-                    let is_move = self.block.words.iter().any(|w| form.amount(w.letter) == AmountOf::Length);
-                    self.moves += u64::from(is_move);
+                    if !self.moves {
+                        let form = self.printer.form();
+                        self.moves =
+                            self.block.words.iter().any(|w| form.amount(w.letter) == AmountOf::Length);
+                    }
                     if let Some(starvation) = &mut self.starvation {
                         let characters = text.len() - start;
                         starvation.see(self.printer.form(), &self.block, self.blocks, characters);
@@ -135,9 +137,9 @@ impl<N: Number> Expanded<N> {
         self.blocks
     }
 
-    /// Blocks spelled so far that hold a length or an angle: those that move something.
+    /// Whether a block spelled so far holds a length or an angle, and so may move something.
     #[must_use]
-    pub fn moves(&self) -> u64 {
+    pub fn moves(&self) -> bool {
         self.moves
     }
 

@@ -158,7 +158,7 @@ impl Printer {
         };
         if let Some(number) = number {
             text.push(b'N');
-            digits(number, 1, text);
+            digits(number, text);
             if self.form.blanks {
                 text.push(b' ');
             }
@@ -175,9 +175,10 @@ impl Printer {
         text: &mut Vec<u8>,
     ) -> Result<(), Unspellable> {
         if self.form.blanks && text.len() > start && !matches!(text.last(), Some(b' ' | b'/')) {
-            text.push(b' ');
+            text.extend_from_slice(&[b' ', word.letter]);
+        } else {
+            text.push(word.letter);
         }
-        text.push(word.letter);
         let kind = self.form.amount(word.letter);
         match word.amount {
             Amount::Written { number, digits: (from, to) } => {
@@ -301,52 +302,86 @@ fn signed(value: i64, text: &mut Vec<u8>) {
     if value < 0 {
         text.push(b'-');
     }
-    digits(value.unsigned_abs(), 1, text);
+    digits(value.unsigned_abs(), text);
 }
 
 /// `value / 10^decimals` with a point; never `-0`.
 #[inline]
 fn decimal(value: i64, decimals: u8, trailing_zeros: bool, leading_zero: bool, text: &mut Vec<u8>) {
-    if value < 0 {
-        text.push(b'-');
+    // Sign, twenty digits, the point; from behind.
+    let mut buffer = [b'0'; 32];
+    let (mut end, places) = (buffer.len(), usize::from(decimals.min(18)));
+    let point = end - places - 1;
+    let power = POWERS[places];
+    let (mut whole, mut rest) = (value.unsigned_abs() / power, value.unsigned_abs() % power);
+    let mut at = end;
+    while at > point + 2 {
+        at -= 2;
+        buffer[at..at + 2].copy_from_slice(pair(rest % 100));
+        rest /= 100;
     }
-    let places = usize::from(decimals);
-    let from = text.len();
-    digits(value.unsigned_abs(), places + 1, text);
-    let (point, end) = (text.len() - places, text.len());
-    text.push(b'.');
-    text.copy_within(point..end, point + 1);
-    text[point] = b'.';
-    if !trailing_zeros {
-        let end = text.iter().rposition(|b| *b != b'0').map_or(point, |at| at);
-        text.truncate(end.max(point) + 1);
+    if at > point + 1 {
+        buffer[at - 1] = b'0' + rest as u8;
     }
+    buffer[point] = b'.';
+    at = point;
     // A zero is written all the same where no digit would be left.
-    if !leading_zero && text[from] == b'0' && point == from + 1 && text.len() > point + 1 {
-        text.remove(from);
+    if whole > 0 || leading_zero || places == 0 || (!trailing_zeros && value == 0) {
+        while whole >= 10 {
+            at -= 2;
+            buffer[at..at + 2].copy_from_slice(pair(whole % 100));
+            whole /= 100;
+        }
+        if whole > 0 || at == point {
+            at -= 1;
+            buffer[at] = b'0' + whole as u8;
+        }
     }
+    if !trailing_zeros {
+        while buffer[end - 1] == b'0' {
+            end -= 1;
+        }
+    }
+    if value < 0 {
+        at -= 1;
+        buffer[at] = b'-';
+    }
+    text.extend_from_slice(&buffer[at..end]);
 }
 
-/// A whole number with at least so many digits.
-#[inline]
-fn digits(mut value: u64, least: usize, text: &mut Vec<u8>) {
+/// A whole number.
+fn digits(value: u64, text: &mut Vec<u8>) {
     let mut buffer = [b'0'; 20];
-    let mut at = buffer.len();
-    while value >= 100 {
-        let pair = (value % 100) as usize * 2;
-        value /= 100;
+    let (mut at, mut value) = (buffer.len(), value);
+    while value >= 10 {
         at -= 2;
-        buffer[at..at + 2].copy_from_slice(&PAIRS[pair..pair + 2]);
+        buffer[at..at + 2].copy_from_slice(pair(value % 100));
+        value /= 100;
     }
-    let pair = value as usize * 2;
-    at -= 2;
-    buffer[at..at + 2].copy_from_slice(&PAIRS[pair..pair + 2]);
-    if value < 10 {
-        at += 1;
+    if value > 0 || at == buffer.len() {
+        at -= 1;
+        buffer[at] = b'0' + value as u8;
     }
-    let at = at.min(buffer.len().saturating_sub(least));
     text.extend_from_slice(&buffer[at..]);
 }
+
+/// Two digits.
+#[inline]
+fn pair(value: u64) -> &'static [u8] {
+    let at = value as usize * 2;
+    &PAIRS[at..at + 2]
+}
+
+/// Powers of ten as far as a number has decimals.
+const POWERS: [u64; 19] = {
+    let mut powers = [1; 19];
+    let mut n = 1;
+    while n < 19 {
+        powers[n] = powers[n - 1] * 10;
+        n += 1;
+    }
+    powers
+};
 
 /// `00` to `99`.
 const PAIRS: [u8; 200] = {

@@ -153,3 +153,37 @@ fn words_in_force_are_left_out_on_request_only_where_they_say_nothing_new() {
         assert_eq!(printed(&mut printer, text), expected, "{text}");
     }
 }
+
+/// Against the standard library's own integers, padded.
+#[test]
+fn every_number_of_digits_is_spelled_as_the_standard_library_spells_it() {
+    let mut value = 0x9E37_79B9_7F4A_7C15_u64;
+    for n in 0..20_000u32 {
+        value = value.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let number = (value as i64) >> (n % 64);
+        for decimals in 0..=9u8 {
+            let power = 10u64.pow(u32::from(decimals));
+            let (sign, size) = (if number < 0 { "-" } else { "" }, number.unsigned_abs());
+            let (whole, rest) = (size / power, size % power);
+            let behind =
+                if decimals == 0 { String::new() } else { format!("{rest:0w$}", w = usize::from(decimals)) };
+            let spelled = |trailing, leading| {
+                let mut text = Vec::new();
+                decimal(number, decimals, trailing, leading, &mut text);
+                String::from_utf8(text).unwrap()
+            };
+            assert_eq!(spelled(true, true), format!("{sign}{whole}.{behind}"));
+            let short = behind.trim_end_matches('0');
+            assert_eq!(spelled(false, true), format!("{sign}{whole}.{short}"));
+            if whole > 0 {
+                assert_eq!(spelled(false, false), format!("{sign}{whole}.{short}"));
+            } else {
+                let zero = if short.is_empty() { "0" } else { "" };
+                assert_eq!(spelled(false, false), format!("{sign}{zero}.{short}"));
+            }
+        }
+        let mut text = Vec::new();
+        signed(number, &mut text);
+        assert_eq!(String::from_utf8(text).unwrap(), number.to_string());
+    }
+}
