@@ -136,6 +136,8 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         resume.push_str(" --source FILE");
     }
     say!("job {}", job.job);
+    // What cannot be taken up is not offered to be.
+    let goes_on = source.check_from_block(u64::MAX).is_ok();
     let journal = writer.attach(Box::new(file), from_block - 1);
     Feeding {
         source: &source,
@@ -147,9 +149,18 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
         report: options.report,
         stops,
         is_resumed: false,
-        resume: Some(resume),
+        resume: goes_on.then_some(resume),
     }
     .run()
+    .map_err(|failure| {
+        if goes_on {
+            failure
+        } else {
+            failure.help(
+                "clear the control and send it again: a program of this kind is begun at its first block",
+            )
+        }
+    })
 }
 
 /// Checks that the program has the block that is to go first.

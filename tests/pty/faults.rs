@@ -91,6 +91,24 @@ fn an_alarm_and_a_reset_of_the_control_end_with_6_and_say_which() {
     }
 }
 
+/// A macro that computes for longer than anyone would wait keeps neither the line nor the operator waiting.
+#[test]
+fn ctrl_c_is_heard_while_a_macro_computes() {
+    let bench = Bench::new();
+    let text = "G21 G90\nG92 X0. Y0.\nG01 X1. Y1. F100\n#1=0\nWHILE[#1LT9000000000]DO1\n#1=#1+1\nEND1\nG01 X2. Y2.\nM02\n";
+    let program = bench.file("long.nc", text);
+    let mock = bench.mock_on_tcp(&["--unpaced", "--dialect", "gcode"]);
+    let port = mock.port.clone();
+    let send = ["send", &program, "--port", &port, "--budget", "100000000000"];
+    let child = bench.dripfeed(&send).stderr(Stdio::piped()).spawn().unwrap();
+    wait_until("the blocks before it are cut", || mock.status()["end_um"] == serde_json::json!([1000, 1000]));
+    signal(&child, Signal::INT);
+    let (code, stderr) = verdict(&finish(child));
+    assert_eq!(code, 7, "{stderr}");
+    assert!(stderr.contains("block 3 was the last one sent whole"), "{stderr}");
+    assert!(!stderr.contains("to go on:"), "a macro program is begun at its first block: {stderr}");
+}
+
 #[test]
 fn ctrl_c_stops_at_the_end_of_a_block_and_the_job_goes_on_from_there() {
     for kind in [Signal::INT, Signal::TERM, Signal::HUP] {
