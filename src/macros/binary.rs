@@ -1,6 +1,6 @@
 //! Binary floating point: what a macro counts with on a control that counts so (`numbers = "f64"`).
 //!
-//! Here 25 less 250 times 0.02 is 20.0000000000001, a loop down to 20 takes a turn more, COS[90] is 6e-17, and all that is
+//! Here 25 less 250 times 0.02 is 20.0000000000001, a loop down to 20 takes a turn more, `COS[90]` is 6e-17, and all that is
 //! meant: a program mended for such a control makes what it makes there. Fanuc's Series 15i counts in doubles (B-63324EN/03,
 //! 17 "Custom macro", "Data type"); what other controls clamp or round on the way is unverified and left out.
 //!

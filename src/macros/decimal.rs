@@ -6,8 +6,8 @@
 //! is refused. Equal values compare equal however many noughts they carry.
 //!
 //! Functions go through `libm`, the same on every platform, and are rounded to [`SIGNIFICANT`] digits and no more than
-//! [`FUNCTION_DECIMALS`] decimals: an error of a few units in the sixteenth digit disappears, and COS[60] is 0.5. SQRT is
-//! rounded correctly ([`root`]).
+//! [`FUNCTION_DECIMALS`] decimals: an error of a few units in the sixteenth digit disappears, and `COS[60]` is 0.5. SQRT is
+//! rounded correctly (`root.rs`).
 //!
 //! There is no infinity, no negative nought, and null is not a number: it is the language's.
 

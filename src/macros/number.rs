@@ -117,7 +117,7 @@ pub trait Number: Copy + Debug + Send + Sync + 'static {
     ///
     /// Where it has no value.
     fn function(self, function: Function) -> Result<Self, Undefined>;
-    /// ATAN[self]/[other]: the angle of (x = other, y = self), from 0 to 360 degrees.
+    /// `ATAN[self]/[other]`: the angle of (x = other, y = self), from 0 to 360 degrees.
     ///
     /// # Errors
     ///
