@@ -122,3 +122,69 @@ fn a_slot_over_the_contours_beginning_is_told_from_its_last_element_to_its_first
         assert!((slot.largest - 0.1).abs() < 1e-6 && (slot.at - p(5.0, 5.0)).norm() < 1e-6, "{slot:?}");
     }
 }
+
+/// Two bends with a short way between them, which the wire of 0.5 passes over: it turns once, off the middle by
+/// 0.5 (1 / cos of half the turn - 1) less the sagitta of the short way. Below a micron nothing is told.
+#[test]
+fn a_short_way_between_two_bends_is_told_where_more_than_a_micron_stays() {
+    for (bend, wanted) in [(0.04, 0), (0.12, 1)] {
+        let along = |angle: f64, length: f64| Vector::new(libm::cos(angle), libm::sin(angle)) * length;
+        let short = 0.5 * bend * 0.6;
+        let second = p(10.0, 0.0) + along(bend, short);
+        let path = Path::new(vec![
+            line(p(0.0, 0.0), p(10.0, 0.0)),
+            line(p(10.0, 0.0), second),
+            line(second, second + along(2.0 * bend, 10.0)),
+        ])
+        .unwrap();
+        let found = offset(&path, 0.5, Corners::Round).unwrap();
+        assert_eq!(found.unreached.len(), wanted, "{bend}: {:?}", found.unreached);
+        if let [run] = found.unreached[..] {
+            assert_eq!((run.first, run.last), (1, 1), "{run:?}");
+        }
+    }
+}
+
+/// Two rooms with a passage 0.6 high between them: the wire of 0.5 cuts both, and a stretch of the floor they share is
+/// told though the wire runs beside it before and behind; 0.3 passes.
+#[test]
+fn a_stretch_of_one_wall_is_told_where_it_is_run_beside_on_both_its_sides() {
+    let nodes =
+        [(0.0, 0.0), (10.0, 0.0), (10.0, 4.0), (6.0, 4.0), (6.0, 0.6), (4.0, 0.6), (4.0, 4.0), (0.0, 4.0)];
+    let at = |n: usize| p(nodes[n % 8].0, nodes[n % 8].1);
+    let path = Path::new((0..8).map(|n| line(at(n), at(n + 1))).collect()).unwrap();
+    let found = offset(&path, 0.5, Corners::Round).unwrap();
+    assert_eq!(found.outlines.len(), 2);
+    let floor: Vec<_> = found.unreached.iter().filter(|run| (run.first, run.last) == (0, 0)).collect();
+    let [floor] = floor[..] else { panic!("{:?}", found.unreached) };
+    assert!((floor.at - p(5.0, 0.0)).norm() < 1e-6 && (floor.largest - 0.3).abs() < 1e-6, "{floor:?}");
+    assert!(offset(&path, 0.29, Corners::Round).unwrap().unreached.is_empty());
+}
+
+/// A wedge whose tip stands before a corner parts the room in two: what both rooms lack of the corner's walls is told,
+/// and is no corner that one wire fills.
+#[test]
+fn a_corner_that_lies_between_two_outlines_is_told() {
+    for tip in [(0.5, 0.5), (0.45, 0.6), (0.65, 0.42)] {
+        let nodes = [(0.0, 0.0), (10.0, 0.0), (10.0, 9.0), tip, (9.0, 20.0), (0.0, 20.0)];
+        let at = |n: usize| p(nodes[n % 6].0, nodes[n % 6].1);
+        let path = Path::new((0..6).map(|n| line(at(n), at(n + 1))).collect()).unwrap();
+        for first in 0..6 {
+            let found = offset(&path.clone().begun_at(first), 0.4, Corners::Round).unwrap();
+            assert_eq!(found.outlines.len(), 2);
+            let [last, next] = [5, 0].map(|n: usize| (n + 6 - first) % 6);
+            let corner = found.unreached.iter().find(|run| (run.first, run.last) == (last, next));
+            let corner = corner.unwrap_or_else(|| panic!("{first}: {:?}", found.unreached));
+            // As far as the wires come to the corner on either wall; the middle is as far from both.
+            let nearest = |element: usize, along: fn(Point) -> f64| {
+                let ways = found.outlines.iter().flat_map(|o| o.path.elements().iter().zip(&o.origins));
+                let beside = ways.filter(|(_, origin)| **origin == Origin::Element(element));
+                beside.map(|(way, _)| along(way.start()).min(along(way.end()))).fold(f64::INFINITY, f64::min)
+            };
+            let (down, right) = (nearest(last, |p| p.y), nearest(next, |p| p.x));
+            let half = (down - right) / 2.0;
+            let middle = if half > 0.0 { p(0.0, half) } else { p(-half, 0.0) };
+            assert!((corner.at - middle).norm() < 1e-6, "{corner:?} {middle:?}");
+        }
+    }
+}
