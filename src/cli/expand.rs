@@ -16,7 +16,7 @@ use clap::Args;
 use super::connection::{self, LineOptions};
 use super::failure::Failure;
 use super::feeding;
-use super::macros::{Forecast, Lines, MacroOptions, MacroProgram, line_of, say_findings, text_of};
+use super::macros::{Forecast, Lines, MacroOptions, MacroProgram, line_of, text_of};
 use crate::macros::expanded::{Expanded, Step};
 use crate::macros::number::Number;
 use crate::macros::starvation::Line;
@@ -69,12 +69,17 @@ pub(super) fn run(options: &Options) -> Result<(), Failure> {
     // Without a machine nobody knows the line.
     let line = options.machine.as_ref().map(|_| line_of(&profile));
     match program.lines() {
-        Lines::Decimal(lines) => print(*lines, line, options),
-        Lines::Binary(lines) => print(*lines, line, options),
+        Lines::Decimal(lines) => print(&program, *lines, line, options),
+        Lines::Binary(lines) => print(&program, *lines, line, options),
     }
 }
 
-fn print<N: Number>(lines: Expanded<N>, line: Option<Line>, options: &Options) -> Result<(), Failure> {
+fn print<N: Number>(
+    program: &MacroProgram,
+    lines: Expanded<N>,
+    line: Option<Line>,
+    options: &Options,
+) -> Result<(), Failure> {
     let mut lines = match line {
         Some(line) => lines.over(line),
         None => lines,
@@ -85,7 +90,7 @@ fn print<N: Number>(lines: Expanded<N>, line: Option<Line>, options: &Options) -
     // What was made before an error is printed before it is told.
     let written = out.write_all(&text).and_then(|()| out.flush()).map_err(Failure::output);
     drop(out);
-    say_findings(&options.input, lines.findings());
+    program.say_noticed(&options.input, lines.findings());
     result.and(written)?;
     if let Some(account) = lines.account().and_then(|account| account.text()) {
         say!("warning: {account}");

@@ -53,6 +53,8 @@ pub(super) struct MacroProgram {
     form: Form,
     arithmetic: Arithmetic,
     suppress: bool,
+    /// What was told of it when it was read.
+    told: Vec<MacroError>,
 }
 
 impl MacroProgram {
@@ -80,15 +82,29 @@ impl MacroProgram {
             }
             last.unwrap_or_else(|| Failure::new(Exit::Program, format!("{name} cannot be read")))
         })?;
-        let (mut errors, warnings): (Vec<Finding>, Vec<Finding>) =
-            program.findings().iter().cloned().partition(|finding| finding.severity == Severity::Error);
+        let (mut errors, warnings): (Vec<Finding>, Vec<Finding>) = foreseen(&program, profile.arithmetic)
+            .into_iter()
+            .partition(|finding| finding.severity == Severity::Error);
         say_findings(name, &warnings);
+        let told = warnings.iter().map(|finding| finding.error.clone()).collect();
         // A program that is foreseen to break is not begun.
         if let Some(last) = errors.pop() {
             say_findings(name, &errors);
             return Err(failure(name, last.error));
         }
-        Ok(Self { program: Arc::new(program), form, arithmetic: profile.arithmetic, suppress })
+        Ok(Self { program: Arc::new(program), form, arithmetic: profile.arithmetic, suppress, told })
+    }
+
+    /// Tells what was noticed while it ran, but for what was told before.
+    pub(super) fn say_noticed(&self, name: &str, findings: &[Finding]) {
+        let is_told = |found: &Finding| {
+            self.told
+                .iter()
+                .any(|told| (told.code, told.place.line) == (found.error.code, found.error.place.line))
+        };
+        for finding in findings.iter().filter(|finding| !is_told(finding)) {
+            say_findings(name, std::slice::from_ref(finding));
+        }
     }
 
     /// Its lines, from the first.
@@ -108,6 +124,8 @@ impl MacroProgram {
 pub(super) struct Forecast {
     /// Why it is not worth running: it moves nothing.
     pub(super) idle: Option<Failure>,
+    /// What was noticed.
+    pub(super) findings: Vec<Finding>,
     /// Whether the line keeps up, in words, where it does not.
     pub(super) starvation: Option<String>,
     /// Its length, where the end was reached.
@@ -145,7 +163,8 @@ fn ahead<N: Number>(name: &str, mut lines: Expanded<N>) -> Result<Forecast, Fail
     }
     let idle = (is_whole && !lines.moves()).then(|| idle(name, lines.findings()));
     let starvation = lines.account().and_then(|account| account.text());
-    Ok(Forecast { idle, starvation, size: is_whole.then_some(size) })
+    let findings = lines.findings().to_vec();
+    Ok(Forecast { idle, findings, starvation, size: is_whole.then_some(size) })
 }
 
 /// A program that moves nothing; most likely for a loop that does not run.
@@ -209,8 +228,16 @@ pub(super) fn line_of(profile: &Profile) -> Line {
     }
 }
 
+/// What is found without running a program, errors first.
+fn foreseen(program: &Program, arithmetic: Arithmetic) -> Vec<Finding> {
+    match arithmetic {
+        Arithmetic::Decimal => program.check::<Decimal>(),
+        Arithmetic::Binary => program.check::<Binary>(),
+    }
+}
+
 /// Tells what was noticed and is no error.
-pub(super) fn say_findings(name: &str, findings: &[Finding]) {
+fn say_findings(name: &str, findings: &[Finding]) {
     for finding in findings {
         let MacroError { code, .. } = finding.error;
         let word = match finding.severity {

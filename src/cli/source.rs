@@ -244,6 +244,7 @@ impl Source {
         if let Some(failure) = forecast.idle {
             return Err(failure);
         }
+        program.say_noticed(&self.path, &forecast.findings);
         if let Some(words) = forecast.starvation.filter(|_| !unpaced) {
             say!("warning: {words}");
         }

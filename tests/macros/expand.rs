@@ -171,6 +171,17 @@ fn what_is_sent_is_what_is_expanded() {
 }
 
 #[test]
+fn a_loop_that_steps_the_wrong_way_is_refused_before_its_first_block() {
+    let output = on("#1=25.\nWHILE[#1GT20]DO1\n#1=#1+0.02\nG01 X#1\nEND1\nM30\n", &["expand", "FILE"]);
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(3), 0), "{}", said(&output));
+    assert!(said(&output).contains("program.nc:2"), "{}", said(&output));
+    // A count of nothing is a setting, and told.
+    let output = on("#5=0\n#1=0\nWHILE[#1LT#5]DO1\n#1=#1+1\nG01 X#1\nEND1\nG01 X9.\n", &["expand", "FILE"]);
+    assert_eq!(lines(&output), ["G01 X9.000"], "{}", said(&output));
+    assert_eq!(said(&output).matches("loop-never-runs").count(), 1, "{}", said(&output));
+}
+
+#[test]
 fn blocks_before_an_error_are_printed_and_none_behind_it() {
     let output = on("G21 G90\n#1=2\nWHILE[#1GE0]DO1\n#1=#1-1\nG01 X[1/#1]\nEND1\nM30\n", &["expand", "FILE"]);
     assert_eq!(output.status.code(), Some(3));
