@@ -16,6 +16,7 @@ use clap::Args;
 use super::connection::{self, LineOptions};
 use super::failure::Failure;
 use super::feeding;
+use super::kind::Kind;
 use super::macros::{Forecast, Lines, MacroOptions, MacroProgram, line_of, text_of};
 use crate::macros::expanded::{Expanded, Step};
 use crate::macros::number::Number;
@@ -52,6 +53,7 @@ pub(super) struct Options {
 pub(super) fn run(options: &Options) -> Result<(), Failure> {
     let line = LineOptions { set: options.set.clone(), ..LineOptions::default() };
     let profile = connection::of_macros(options.machine.as_deref(), &line)?;
+    Kind::asked(&options.input, Some(Kind::Macro))?;
     let text = text_of(&options.input)?;
     let program = MacroProgram::parse(
         &options.input,

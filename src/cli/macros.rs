@@ -1,7 +1,8 @@
 //! Macro programs on the command line: how they are read, where the programs they call are found.
 
 use std::collections::BTreeMap;
-use std::io::Read as _;
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -107,6 +108,14 @@ impl MacroProgram {
         }
     }
 
+    /// Runs the beginning of a program to see what is coming: what breaks early is found before the first byte.
+    pub(super) fn forecast(&self, name: &str, line: Line) -> Result<Forecast, Failure> {
+        match self.lines() {
+            Lines::Decimal(lines) => ahead(name, lines.over(line)),
+            Lines::Binary(lines) => ahead(name, lines.over(line)),
+        }
+    }
+
     /// Its lines, from the first.
     pub(super) fn lines(&self) -> Lines {
         let printer = Printer::new(self.form.clone(), self.suppress);
@@ -130,16 +139,6 @@ pub(super) struct Forecast {
     pub(super) starvation: Option<String>,
     /// Its length, where the end was reached.
     pub(super) size: Option<Size>,
-}
-
-impl MacroProgram {
-    /// Runs the beginning of a program to see what is coming: what breaks early is found before the first byte.
-    pub(super) fn forecast(&self, name: &str, line: Line) -> Result<Forecast, Failure> {
-        match self.lines() {
-            Lines::Decimal(lines) => ahead(name, lines.over(line)),
-            Lines::Binary(lines) => ahead(name, lines.over(line)),
-        }
-    }
 }
 
 fn ahead<N: Number>(name: &str, mut lines: Expanded<N>) -> Result<Forecast, Failure> {
@@ -204,18 +203,11 @@ impl Lines {
 /// The whole text: what may be gone to must be there.
 pub(super) fn text_of(word: &str) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::new();
-    if word == "-" {
-        std::io::stdin()
-            .lock()
-            .read_to_end(&mut text)
-            .map_err(|error| unreadable("standard input", &error))?;
-    } else {
-        if std::path::Path::new(word).is_dir() {
-            return Err(Failure::new(Exit::Program, format!("{word} is a directory, not a program"))
-                .help("name one of the files in it"));
-        }
-        text = std::fs::read(word).map_err(|error| unreadable(word, &error))?;
-    }
+    let (name, read) = match word {
+        "-" => ("standard input", io::stdin().lock().read_to_end(&mut text)),
+        file => (file, File::open(file).and_then(|mut file| file.read_to_end(&mut text))),
+    };
+    read.map_err(|error| unreadable(name, &error))?;
     Ok(text)
 }
 

@@ -1,5 +1,6 @@
 //! A block as a macro program makes it: words with their values, before they are spelled.
 
+use super::number::Number;
 use crate::formats::gcode::numbers;
 use crate::place::Spot;
 
@@ -42,6 +43,17 @@ pub enum Amount<N> {
     },
     /// Computed: `X[#101]`, `X#1`, `X-#1`; a length in the program's unit, an angle in degrees.
     Computed(N),
+}
+
+impl<N: Number> Word<N> {
+    /// Its number where it is a whole one: of a code.
+    #[must_use]
+    pub fn whole(&self) -> Option<i64> {
+        match self.amount {
+            Amount::Written { number, .. } => (number.decimals == 0).then_some(number.mantissa),
+            Amount::Computed(value) => value.as_whole(),
+        }
+    }
 }
 
 impl<N> Default for Block<N> {

@@ -22,6 +22,7 @@ use std::fmt;
 
 use super::number::codes;
 use super::number::{Bits, Function, Number, Rounding, Undefined};
+use crate::formats::gcode::numbers::POWERS;
 
 /// A decimal number: `mantissa / 10^scale`.
 ///
@@ -40,17 +41,6 @@ pub const SCALE_MAX: u8 = 18;
 pub const SIGNIFICANT: u8 = 15;
 /// The most decimals of a function's result; SQRT's too.
 pub const FUNCTION_DECIMALS: u8 = 15;
-
-/// Powers of ten as far as a mantissa has digits.
-const POWERS: [i64; 19] = {
-    let mut powers = [1i64; 19];
-    let mut n = 1;
-    while n < powers.len() {
-        powers[n] = powers[n - 1] * 10;
-        n += 1;
-    }
-    powers
-};
 
 impl Decimal {
     /// A number of a mantissa that is at most the largest; `i64::MIN` differs from it in the nineteenth digit only.

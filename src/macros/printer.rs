@@ -8,6 +8,7 @@ use super::block::{Amount, Block, Word};
 use super::form::{AmountOf, Form, Numbering, Point};
 use super::number::Number;
 use super::suppress::InForce;
+use crate::formats::gcode::numbers::POWERS;
 use crate::place::Spot;
 
 #[cfg(test)]
@@ -312,7 +313,7 @@ fn decimal(value: i64, decimals: u8, trailing_zeros: bool, leading_zero: bool, t
     let mut buffer = [b'0'; 32];
     let (mut end, places) = (buffer.len(), usize::from(decimals.min(18)));
     let point = end - places - 1;
-    let power = POWERS[places];
+    let power = POWERS[places].unsigned_abs();
     let (mut whole, mut rest) = (value.unsigned_abs() / power, value.unsigned_abs() % power);
     let mut at = end;
     while at > point + 2 {
@@ -371,17 +372,6 @@ fn pair(value: u64) -> &'static [u8] {
     let at = value as usize * 2;
     &PAIRS[at..at + 2]
 }
-
-/// Powers of ten as far as a number has decimals.
-const POWERS: [u64; 19] = {
-    let mut powers = [1; 19];
-    let mut n = 1;
-    while n < 19 {
-        powers[n] = powers[n - 1] * 10;
-        n += 1;
-    }
-    powers
-};
 
 /// `00` to `99`.
 const PAIRS: [u8; 200] = {

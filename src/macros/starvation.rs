@@ -8,6 +8,7 @@
 use super::block::{Amount, Block, Word};
 use super::form::Form;
 use super::number::Number;
+use crate::formats::gcode::numbers::POWERS;
 
 /// The line and the control's buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +81,7 @@ impl Starvation {
         let mut elsewhere = false;
         for word in &block.words {
             match word.letter {
-                b'G' => match code(word) {
+                b'G' => match word.whole() {
                     Some(motion @ 0..=3) => self.motion = Some(motion),
                     Some(20) => self.unit = 1,
                     Some(21) => self.unit = 0,
@@ -147,25 +148,16 @@ impl Account {
     }
 }
 
-fn code<N: Number>(word: &Word<N>) -> Option<i64> {
-    match word.amount {
-        Amount::Written { number, .. } => (number.decimals == 0).then_some(number.mantissa),
-        Amount::Computed(value) => value.as_whole(),
-    }
-}
-
 /// In the program's unit.
 fn value<N: Number>(form: &Form, unit: usize, word: &Word<N>) -> Option<f64> {
     match word.amount {
         Amount::Written { number, .. } if word.letter == b'F' => Some(number.decimal()),
         Amount::Written { number, .. } => form
             .value(unit, number)
-            .map(|value| value as f64 / POWERS[usize::from(form.decimals[unit].min(9))]),
+            .map(|value| value as f64 / POWERS[usize::from(form.decimals[unit])] as f64),
         Amount::Computed(value) => Some(value.approximate()),
     }
 }
-
-const POWERS: [f64; 10] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
 
 #[cfg(test)]
 mod tests {

@@ -29,7 +29,7 @@ enum Said {
 impl InForce {
     /// The words to leave out, a bit each, and notes what the block puts in force. Words beyond the 63rd are never left out.
     pub(super) fn dropped<N: Number>(&mut self, form: &Form, unit: usize, words: &[Word<N>]) -> u64 {
-        let codes = || words.iter().filter(|word| word.letter == b'G').map(|word| whole(word));
+        let codes = || words.iter().filter(|word| word.letter == b'G').map(Word::whole);
         let is_plain = codes().all(|code| matches!(code, Some(0..=3 | 17..=19 | 90 | 91 | 94)));
         if !is_plain {
             // Coordinates mean something else here, or the block changes what they are counted from.
@@ -49,7 +49,7 @@ impl InForce {
         let mut bit = 1u64;
         // The modal words first: they hold for the whole block, wherever in it they stand.
         for word in words {
-            match (word.letter, whole(word)) {
+            match (word.letter, word.whole()) {
                 (b'G', Some(code @ 0..=3)) => {
                     dropped |= if self.motion.replace(code) == Some(code) { bit } else { 0 };
                 }
@@ -102,13 +102,6 @@ impl InForce {
         }
         let all = if words.len() >= 64 { u64::MAX } else { (1 << words.len()) - 1 };
         if dropped & all == all { dropped & !1 } else { dropped }
-    }
-}
-
-fn whole<N: Number>(word: &Word<N>) -> Option<i64> {
-    match word.amount {
-        Amount::Written { number, .. } => (number.decimals == 0).then_some(number.mantissa),
-        Amount::Computed(value) => value.as_whole(),
     }
 }
 

@@ -89,7 +89,7 @@ pub fn millimetres(nanometres: i64) -> f64 {
 }
 
 /// Powers of ten as far as a mantissa has digits.
-pub(super) const POWERS: [i64; 19] = {
+pub(crate) const POWERS: [i64; 19] = {
     let mut powers = [1i64; 19];
     let mut n = 1;
     while n < 19 {

@@ -91,9 +91,9 @@ fn a_slot_tells_half_its_width() {
     assert_eq!((fits.unreached.len(), fits.filled_corners), (0, 2));
 }
 
-#[test]
-fn a_dumbbell_comes_apart_and_its_neck_is_told() {
-    let path = polygon(&[
+/// Two rooms of 4 by 4 with a neck 0.4 high between them.
+fn dumbbell() -> Path {
+    polygon(&[
         (0.0, 0.0),
         (4.0, 0.0),
         (4.0, 1.8),
@@ -106,7 +106,12 @@ fn a_dumbbell_comes_apart_and_its_neck_is_told() {
         (4.0, 2.2),
         (4.0, 4.0),
         (0.0, 4.0),
-    ]);
+    ])
+}
+
+#[test]
+fn a_dumbbell_comes_apart_and_its_neck_is_told() {
+    let path = dumbbell();
     let found = offset(&path, 0.5, Corners::Round).unwrap();
     assert_eq!(found.outlines.len(), 2);
     let necks: Vec<_> = found.unreached.iter().map(|run| (run.first, run.last)).collect();
@@ -373,20 +378,7 @@ fn an_elements_own_part_comes_before_its_corner_and_both_before_the_next() {
 
 #[test]
 fn outlines_come_in_the_order_of_the_contour_wherever_it_begins() {
-    let path = polygon(&[
-        (0.0, 0.0),
-        (4.0, 0.0),
-        (4.0, 1.8),
-        (8.0, 1.8),
-        (8.0, 0.0),
-        (12.0, 0.0),
-        (12.0, 4.0),
-        (8.0, 4.0),
-        (8.0, 2.2),
-        (4.0, 2.2),
-        (4.0, 4.0),
-        (0.0, 4.0),
-    ]);
+    let path = dumbbell();
     for first in 0..12 {
         let found = offset(&path.clone().begun_at(first), 0.5, Corners::Round).unwrap();
         let begun: Vec<usize> = found.outlines.iter().map(|outline| outline.origins[0].element()).collect();
