@@ -5,8 +5,10 @@
 //! aside, since places are shown by reading again: first, where a program is read on behind an error, and G-code, which may
 //! call what stands behind its end; else block by block as it comes.
 
+mod aside;
+
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Seek as _, SeekFrom, Write as _};
+use std::io::{self, BufReader, Read, Seek as _, SeekFrom};
 use std::path::Path;
 
 use clap::Args;
@@ -15,7 +17,7 @@ use super::dialects;
 use super::drawing;
 use super::failure::{Exit, Failure};
 use super::kind::Kind;
-use super::macros::{self, MacroOptions, MacroProgram};
+use super::macros::MacroOptions;
 use super::source;
 use crate::drawing::dxf::Drawing;
 use crate::formats::ReadError;
@@ -24,12 +26,12 @@ use crate::formats::lines::Line;
 use crate::formats::three_b::{self, Block};
 use crate::geometry::Point;
 use crate::interpolator::Model;
-use crate::macros::form::Point as Points;
 use crate::motion::{Act, Motion};
 use crate::part::{Part, Prepared};
 use crate::place::{Place, Spot};
 use crate::profile::Profile;
 use crate::program::{Generated, Program};
+use aside::{Copied, expanded, put_aside};
 
 /// How IN is to be read.
 #[derive(Args, Clone, Debug, Default)]
@@ -386,88 +388,6 @@ fn block_width(text: &[u8]) -> usize {
 /// What a source is called in messages.
 fn name_of(word: &str) -> String {
     if word == "-" { "standard input".to_owned() } else { word.to_owned() }
-}
-
-/// What can be read only once, copied aside as it is read, so that places in it can be shown.
-struct Copied {
-    source: Box<dyn Read>,
-    copy: File,
-}
-
-impl Copied {
-    /// The copy, and what fills it.
-    fn open(word: &str) -> io::Result<(File, Self)> {
-        let copy = aside()?;
-        let source: Box<dyn Read> =
-            if word == "-" { Box::new(io::stdin()) } else { Box::new(File::open(word)?) };
-        Ok((copy.try_clone()?, Self { source, copy }))
-    }
-}
-
-impl Read for Copied {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.source.read(buffer)?;
-        // Whoever shows a place moves the position, which is one for both.
-        self.copy.seek(SeekFrom::End(0))?;
-        self.copy.write_all(&buffer[..count])?;
-        Ok(count)
-    }
-}
-
-/// A file without a name.
-fn aside() -> io::Result<File> {
-    let path = std::env::temp_dir().join(format!("dripfeed-{}.in", std::process::id()));
-    let file = File::options().read(true).write(true).create_new(true).open(&path)?;
-    // An open file stays readable without its name; where a system thinks otherwise it is left behind.
-    let _ = std::fs::remove_file(&path);
-    Ok(file)
-}
-
-/// What a macro program makes, in a file without a name: it is read more than once, and places in it are shown.
-fn expanded(word: &str, reading: &Reading) -> Result<File, Failure> {
-    let generic = || Profile::generic_iso().map_err(|error| Failure::keys(Exit::Ours, "generic-iso", error));
-    let mut profile = reading.profile.clone().map_or_else(generic, Ok)?;
-    // Here it is a reader who must not mistake a length, and not the machine.
-    profile.form.point = Points::Always;
-    let text = macros::text_of(word)?;
-    let program = MacroProgram::parse(word, &text, &reading.macros, &profile, reading.dialect(), false)?;
-    let failed = |error: io::Error| Failure::new(Exit::Ours, format!("{word} cannot be expanded: {error}"));
-    let mut file = BufWriter::with_capacity(BUFFER, aside().map_err(failed)?);
-    let (mut line, mut bytes) = (Vec::new(), 0u64);
-    let mut lines = program.lines().into_program();
-    loop {
-        line.clear();
-        match lines.pull(&mut line).map_err(|error| Failure::program(word, error))? {
-            Some(_) => line.push(b'\n'),
-            None => break,
-        }
-        bytes += line.len() as u64;
-        if bytes > EXPANDED_BYTES_MAX {
-            let message = format!("{word} expands to more than {} GiB", EXPANDED_BYTES_MAX >> 30);
-            return Err(Failure::new(Exit::Program, message).help(
-                "`dripfeed expand` and `dripfeed send` make any length; look at a part of it with `| head`",
-            ));
-        }
-        file.write_all(&line).map_err(failed)?;
-    }
-    let mut file = file.into_inner().map_err(|error| failed(error.into_error()))?;
-    file.rewind().map_err(failed)?;
-    Ok(file)
-}
-
-/// The most that is put aside of a macro program.
-const EXPANDED_BYTES_MAX: u64 = 1 << 30;
-
-/// Copies what can be read only once into a file without a name.
-fn put_aside(word: &str) -> io::Result<File> {
-    let mut file = aside()?;
-    if word == "-" {
-        io::copy(&mut io::stdin().lock(), &mut file)?;
-    } else {
-        io::copy(&mut File::open(word)?, &mut file)?;
-    }
-    file.rewind()?;
-    Ok(file)
 }
 
 const BUFFER: usize = 1 << 17;

@@ -4,11 +4,12 @@
 //! for syntax and parameters. A stream (`-`, a FIFO) can be read only once, so its faults come to light as it is fed, each
 //! before its block is offered.
 
+mod reading;
+
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::SystemTime;
 
 use super::connection::{self, LineOptions};
 use super::dialects;
@@ -24,6 +25,7 @@ use crate::part::{Format, Prepared};
 use crate::profile::Profile;
 use crate::program::verbatim::{FourB, Gcode};
 use crate::program::{self, Counted, Line, Program, Segment, Segments};
+use reading::{Hashing, Later, Shared, Stamp, Verified};
 
 /// A checked source.
 #[derive(Debug)]
@@ -64,15 +66,6 @@ enum Body {
     Macro(MacroProgram),
     File(Stamp),
     Stream,
-}
-
-/// What a file was when it was checked.
-#[derive(Clone, Debug)]
-struct Stamp {
-    path: PathBuf,
-    bytes: u64,
-    modified: Option<SystemTime>,
-    digest: blake3::Hash,
 }
 
 /// Reads a part file and says what it left to default; with the digest of its text.
@@ -403,72 +396,6 @@ fn check_gcode(word: &str, path: &Path, dialect: &Dialect) -> Result<(), Failure
         );
     }
     Ok(())
-}
-
-/// A FIFO, opened when it is first read: opening it waits for whoever writes, and that wait must not be the main thread's.
-struct Later {
-    path: String,
-    file: Option<File>,
-}
-
-impl Read for Later {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let file = match self.file.take() {
-            Some(file) => file,
-            None => File::open(&self.path)?,
-        };
-        self.file.insert(file).read(buffer)
-    }
-}
-
-struct Hashing {
-    file: File,
-    hasher: blake3::Hasher,
-    bytes: u64,
-}
-
-/// The file as its reader has it, while the digest stays in reach.
-struct Shared(Arc<Mutex<Hashing>>);
-
-impl Read for Shared {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let mut hashing = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let count = hashing.file.read(buffer)?;
-        hashing.hasher.update(&buffer[..count]);
-        hashing.bytes += count as u64;
-        Ok(count)
-    }
-}
-
-/// A file read for the second time: size and time are compared at every read, the digest at the end.
-struct Verified {
-    file: File,
-    stamp: Stamp,
-    hasher: blake3::Hasher,
-    bytes: u64,
-}
-
-impl Verified {
-    fn open(stamp: Stamp) -> io::Result<Self> {
-        Ok(Self { file: File::open(&stamp.path)?, stamp, hasher: blake3::Hasher::new(), bytes: 0 })
-    }
-}
-
-impl Read for Verified {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let changed = || io::Error::other("the file has changed since it was checked");
-        let metadata = self.file.metadata()?;
-        if metadata.len() != self.stamp.bytes || metadata.modified().ok() != self.stamp.modified {
-            return Err(changed());
-        }
-        let count = self.file.read(buffer)?;
-        self.hasher.update(&buffer[..count]);
-        self.bytes += count as u64;
-        if count == 0 && (self.bytes != self.stamp.bytes || self.hasher.finalize() != self.stamp.digest) {
-            return Err(changed());
-        }
-        Ok(count)
-    }
 }
 
 const READ_BUFFER: usize = 1 << 17;
